@@ -1,0 +1,26 @@
+# How everything is compiled: C++20, Release unless said otherwise, the same bytes on every CPU.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+include(GNUInstallDirs)
+
+option(HAARLIGHT_WERROR "Treat warnings as errors" ON)
+set(HAARLIGHT_SANITIZE "" CACHE STRING "Sanitizers: address;undefined or thread")
+
+add_library(haarlight_settings INTERFACE)
+# No fused multiply-add behind our back: results must not depend on the CPU.
+target_compile_options(haarlight_settings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off -fno-math-errno
+  $<$<BOOL:${HAARLIGHT_WERROR}>:-Werror>)
+if(HAARLIGHT_SANITIZE)
+  list(JOIN HAARLIGHT_SANITIZE "," sanitizers)
+  target_compile_options(haarlight_settings INTERFACE -fsanitize=${sanitizers} -fno-omit-frame-pointer)
+  target_link_options(haarlight_settings INTERFACE -fsanitize=${sanitizers})
+endif()
