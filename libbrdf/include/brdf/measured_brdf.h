@@ -1,0 +1,118 @@
+#pragma once
+// A measured isotropic BRDF: a MERL table, looked up by directions.
+//
+// Local frame: z = the surface normal; wi and wo are unit vectors pointing away from the surface.
+// Values are f_r in sr⁻¹, without cosine; 0 where wi or wo is not above the horizon.
+
+#include <brdf/half_difference.h>
+#include <brdf/large_pages.h>
+#include <brdf/merl_file.h>
+
+#include <wavelet/geometry.h>
+#include <wavelet/lanes.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace haarlight::brdf {
+
+enum class Lookup {
+  Trilinear, ///< between bin centres, over valid cells only; θ clamps, φ_d wraps
+  Nearest    ///< the bin the angles fall in, as the measurements' original reader does
+};
+
+/// `trilinear` or `nearest`.
+const char* lookup_name(Lookup lookup);
+
+/// How many pairs of directions the bulk functions take at most.
+inline constexpr int batch_capacity = 64;
+
+/// Pairs of directions in the local frame, by component.
+struct DirectionBatch {
+  int count = 0;
+  float wi[3][batch_capacity];
+  float wo[3][batch_capacity];
+};
+
+/// Half and difference angles of many pairs, as points (x, y).
+struct HalfDifferenceBatch {
+  int count = 0;
+  float theta_h_y[batch_capacity], theta_h_x[batch_capacity];
+  float theta_d_y[batch_capacity], theta_d_x[batch_capacity];
+  float phi_d_y[batch_capacity], phi_d_x[batch_capacity];
+
+  void move(int from, int to) {
+    theta_h_y[to] = theta_h_y[from];
+    theta_h_x[to] = theta_h_x[from];
+    theta_d_y[to] = theta_d_y[from];
+    theta_d_x[to] = theta_d_x[from];
+    phi_d_y[to] = phi_d_y[from];
+    phi_d_x[to] = phi_d_x[from];
+  }
+};
+
+class MeasuredBrdf {
+public:
+  /// @throws Error(Input) as read_merl()
+  explicit MeasuredBrdf(const std::string& path, Lookup lookup = Lookup::Trilinear);
+
+  /// @param name what provenance calls the table
+  explicit MeasuredBrdf(const MerlTable& table, Lookup lookup = Lookup::Trilinear,
+                        const std::string& name = "table");
+
+  /// f_r in sr⁻¹.
+  Rgb evaluate(const Vec3& local_wi, const Vec3& local_wo) const;
+
+  /// The same for many pairs, with the same bits, several times faster.
+  /// @param values `batch.count` results: R, G, B and 1 (0 where no valid cell is near)
+  void evaluate(const DirectionBatch& batch, Float4* values) const;
+
+  /// f_r of many half and difference angles, horizon or not.
+  void evaluate(const HalfDifferenceBatch& batch, Float4* values) const;
+
+  /// f_r at a table position, horizon or not: R, G, B in sr⁻¹ and 1; all 0 if no cell near is valid.
+  Float4 at(const TablePosition<float>& place) const;
+
+  /// One cell: R, G, B in sr⁻¹ and 1, or all 0 if it is invalid.
+  Float4 cell(int theta_h, int theta_d, int phi_d) const {
+    return m_cells[static_cast<std::size_t>(index(theta_h, theta_d, phi_d + 1))].value;
+  }
+
+  Lookup lookup() const { return m_lookup; }
+  int phi_d_bins() const { return m_phi_d_bins; }
+  /// Whether reciprocity is built into the table.
+  bool folded() const { return m_phi_d_bins == merl_phi_d_bins; }
+  /// Base name of the file.
+  const std::string& name() const { return m_name; }
+  /// Hash of the raw values, 16 hexadecimal digits.
+  const std::string& hash() const { return m_hash; }
+
+  /// The same table averaged over its bilateral mirror images, f(φ_d) and f(π − φ_d); where only one
+  /// of the two is valid, it alone.
+  MeasuredBrdf symmetrised() const;
+
+private:
+  /// One cell: the colour is zero where it is invalid, so that Σ w·rgb / Σ w·valid interpolates over
+  /// valid cells only.
+  struct Cell {
+    Float4 value;
+  };
+
+  /// Place of a cell in m_cells.
+  int index(int theta_h, int theta_d, int padded_phi_d) const {
+    return (theta_h * merl_theta_d_bins + theta_d) * (m_phi_d_bins + 2) + padded_phi_d;
+  }
+  void fill(const MerlTable& table);
+  void pad_rows();
+  Float4 interpolate(int cell, float theta_h_share, float theta_d_share, float phi_d_share) const;
+
+  Lookup m_lookup;
+  int m_phi_d_bins;
+  std::string m_name;
+  std::string m_hash;
+  /// Rows of φ_d with one cell of wrap-around at either end.
+  std::vector<Cell, LargePages<Cell>> m_cells;
+};
+
+} // namespace haarlight::brdf

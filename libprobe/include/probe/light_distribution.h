@@ -1,0 +1,66 @@
+#pragma once
+// Importance sampling of a probe by itself: a pixel is drawn with probability proportional to its
+// luminance times its solid angle, a point in it uniformly in image coordinates.
+
+#include <probe/probe.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace haarlight::probe {
+
+/// A direction towards the light and the density it was drawn with.
+struct LightSample {
+  Vec3 direction; ///< unit vector in world axes
+  float pdf = 0;  ///< sr⁻¹
+};
+
+/// Inverts the marginal cdf of the rows, then the conditional one within the row, so that
+/// stratified and low-discrepancy points stay so. Within a pixel the density is p_pixel / (area in
+/// (u, v) · dω/(du dv)). Pixels that the rim of a round map runs through are sampled in their inner
+/// part only: u uniform over the columns that meet the disk, v uniform over the chord there.
+///
+/// For a probe with bilinear look-up a pixel's weight is the mean of the interpolated luminance
+/// over it (its neighbours count too), so that the density is positive wherever the radiance is.
+class LightDistribution {
+public:
+  /// Keeps nothing of the probe but its shape.
+  /// @throws Error(Input) if the probe is black
+  explicit LightDistribution(const Probe& probe);
+
+  /// @param u uniform in [0, 1)²; its y picks the row, its x the column
+  LightSample sample(const Vec2& u) const;
+
+  /// Density of sample() in solid angle at a unit direction, sr⁻¹.
+  float pdf(const Vec3& w) const;
+
+private:
+  struct Step {
+    int index = 0;
+    std::uint32_t width = 0; ///< of the cdf's step, in units of 1/one
+    float fraction = 0;      ///< of the way through it
+  };
+  /// Cumulative distributions are integers up to `one`, so that the density is exactly that of the
+  /// sampling, however small a pixel's share.
+  static constexpr std::uint32_t one = std::uint32_t{1} << 31U;
+
+  static void accumulate(const std::vector<double>& weights, std::uint32_t* cdf);
+  void make_guide(const std::uint32_t* cdf, std::uint32_t* guide) const;
+  static Step find(const std::uint32_t* begin, const std::uint32_t* end, const std::uint32_t* cdf,
+                   double u);
+  Step find_column(int row, float u) const;
+  Vec2 point_in_pixel(int x, int y, const Vec2& u, float& area) const;
+  float pixel_area(int x, int y, const Vec2& uv) const;
+  float density(std::uint32_t row_width, std::uint32_t column_width, float area,
+                const Vec2& uv) const;
+
+  Mapping m_mapping;
+  int m_width;
+  int m_height;
+  int m_guides;                         ///< entries of the guide of one row
+  std::vector<std::uint32_t> m_rows;    ///< height + 1
+  std::vector<std::uint32_t> m_columns; ///< width + 1 for each row
+  std::vector<std::uint32_t> m_guide; ///< where in a row's cdf each of m_guides equal parts begins
+};
+
+} // namespace haarlight::probe

@@ -1,0 +1,70 @@
+#pragma once
+// Sets of square maps made from a probe: one in the world's frame, or a table of rotated ones.
+//
+// Squares are those of <wavelet/sphere_map.h>. Each pixel is the average of the probe's radiance
+// over its square, and no light is missed, however small: see world_map().
+
+#include <probe/probe.h>
+
+#include <wavelet/map_set.h>
+
+#include <vector>
+
+namespace haarlight::probe {
+
+struct MapOptions {
+  int size = 0;         ///< pixels along a side, a power of two ≥ 4; 0 = default_map_size()
+  int orientations = 1; ///< M: 1 = the one world-frame map, else M × M cells of ω_r
+  int supersample = 4;  ///< s: at least s² samples for each pixel
+};
+
+/// The frame of cell (i, j) of M × M: n = ω_r = square_to_sphere((i + ½)/M, (j + ½)/M), and t and b
+/// those of frame_about(ω_r) in <wavelet/geometry.h>. A map's pixel at local ω shows the radiance
+/// from t ω_x + b ω_y + ω_r ω_z. For M = 1 maps are in world axes instead.
+Frame light_frame(int i, int j, int orientations);
+
+/// The frame of a cell carried along the great circle to another axis: the least rotation that
+/// takes frame.n to `w`. Entries average over their cell in frames so made.
+Frame carried_frame(const Frame& frame, const Vec3& w);
+
+/// Of a world-frame map the power of two that loses nothing, at least 0.8 × the probe's width, from
+/// 512 to 2048; 128 for the maps of a table.
+int default_map_size(const Probe& probe, int orientations);
+
+/// The world-frame map: pixel (x, y) is the average over its square of the probe's radiance, local
+/// axes = world axes. Sampled more densely where the probe's pixels are small; pixels far brighter
+/// than those around them are not left to sampling but spread by area, so that their energy is kept
+/// exactly.
+/// @param size        pixels along a side, a power of two ≥ 4
+/// @param supersample at least supersample² samples for each pixel
+wavelet::Map world_map(const Probe& probe, int size, int supersample);
+
+/// A world map with a border one pixel wide, four floats for each pixel.
+struct WorldLevel {
+  int size = 0;
+  std::vector<float> rgbx;
+};
+
+/// The maps of a probe. make() is the world map, or the map of one cell of ω_r, averaged over the
+/// cell; each is made from the world map,
+/// averaged down, so memory stays at that and one map per thread.
+class ProbeMaps : public wavelet::MapSource {
+public:
+  /// @param source what is known of the probe's origin, the first entries of the set's provenance
+  ProbeMaps(const Probe& probe, const MapOptions& options, const Provenance& source = {});
+
+  const wavelet::SetInfo& info() const override { return m_info; }
+  wavelet::Map make(int column, int row) const override;
+  std::optional<Rgb> integral(int column, int row) const override;
+
+private:
+  void describe(const Provenance& source);
+
+  MapOptions m_options;
+  Rgb m_integral;
+  wavelet::SetInfo m_info;
+  wavelet::Map m_world; ///< for one orientation
+  WorldLevel m_level;   ///< for more
+};
+
+} // namespace haarlight::probe

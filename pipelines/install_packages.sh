@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that are missing. Does nothing, and needs no rights, if none is.
+# Usage: install_packages.sh build|check   (check: what building needs, and the linters)
+set -euo pipefail
+
+packages="g++ cmake ninja-build make pkg-config zstd
+  libopenimageio-dev libopenexr-dev libeigen3-dev libtbb-dev libxxhash-dev libpng-dev
+  libcli11-dev nlohmann-json3-dev catch2 libzstd-dev libgsl-dev libbenchmark-dev"
+if [ "${1:-build}" = check ]; then
+  packages="$packages clang-format clang-tidy"
+fi
+
+missing=""
+for package in $packages; do
+  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+as_root=""
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "$0: needs root or sudo to install:$missing" >&2; exit 1; }
+  as_root=sudo
+fi
+echo "installing:$missing"
+$as_root apt-get update -q
+# shellcheck disable=SC2086
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing

@@ -1,0 +1,57 @@
+#pragma once
+// The scene's distant light: its true radiance, and the trees that stand for it when sampling.
+
+#include <renderer/scene.h>
+#include <renderer/tree_table.h>
+
+#include <probe/light_distribution.h>
+#include <probe/probe.h>
+
+#include <optional>
+
+namespace haarlight::renderer {
+
+/// All directions are in the light's own frame: the probe's axes, turned against the world about +y by
+/// the scene's "rotate". With a tree alone, the tree is the truth.
+class Light {
+public:
+  /// @throws Error(Input) as the files' readers do
+  Light(const LightDescription& description, probe::Lookup lookup);
+
+  /// Radiance from a unit direction.
+  Rgb radiance(const Vec3& w) const;
+
+  /// Makes what samplers use, if not there yet: the world-frame tree; the distribution to draw from.
+  void need_tree();
+  void need_distribution();
+
+  /// After need_tree().
+  const wavelet::TreeView& tree() const { return m_map->tree(0, 0); }
+
+  /// The paper's table of rotated maps, if the scene names one.
+  const TreeTable* rotated_table() const { return m_rotated ? &*m_rotated : nullptr; }
+
+  /// Draws a direction in proportion to radiance; after need_distribution(). @return pdf in sr⁻¹
+  probe::LightSample sample(const Vec2& u) const;
+  float pdf(const Vec3& w) const;
+
+  Vec3 to_world(const Vec3& w) const { return m_turned ? Vec3(m_to_world * w) : w; }
+  Vec3 to_light(const Vec3& w) const { return m_turned ? Vec3(m_to_world.transpose() * w) : w; }
+
+  /// A sentence on how the probe was read, or empty.
+  const std::string& note() const { return m_note; }
+
+private:
+  void place(double degrees);
+
+  bool m_turned = false;
+  Eigen::Matrix3f m_to_world = Eigen::Matrix3f::Identity();
+  std::string m_note;
+  std::optional<probe::Probe> m_probe;
+  std::optional<probe::LightDistribution> m_distribution;
+  std::optional<TreeTable> m_map;
+  std::optional<TreeTable> m_rotated;
+  Provenance m_source;
+};
+
+} // namespace haarlight::renderer

@@ -1,0 +1,51 @@
+#pragma once
+// A scene with everything its description names, ready to render.
+
+#include <renderer/camera.h>
+#include <renderer/light.h>
+#include <renderer/material.h>
+#include <renderer/sampler.h>
+#include <renderer/scene.h>
+#include <renderer/shapes.h>
+
+#include <string>
+#include <vector>
+
+namespace haarlight::renderer {
+
+/// How the sources are looked up where they are the truth.
+struct SourceLookups {
+  brdf::Lookup brdf = brdf::Lookup::Trilinear;
+  probe::Lookup probe = probe::Lookup::Nearest;
+};
+
+/// Owns shapes, materials and light. Not copied: products point into it.
+class LoadedScene {
+public:
+  /// Opens the files a description names and makes what `sampler` and `unshadowed_product` need.
+  /// @param unshadowed_product whether the estimator needs L_ns of a product whatever the sampler
+  /// @throws Error(Input) if a file is broken, of the wrong kind, or one that the sampler needs is not named
+  LoadedScene(const SceneDescription& description, const SourceLookups& lookups, SamplerKind sampler,
+              bool unshadowed_product);
+  LoadedScene(const LoadedScene&) = delete;
+  LoadedScene& operator=(const LoadedScene&) = delete;
+
+  const SceneDescription& description() const { return m_description; }
+  const ShapeSet& shapes() const { return m_shapes; }
+  const Light& light() const { return m_light; }
+  const Material& material_of(int object) const {
+    return m_materials[static_cast<std::size_t>(
+        m_description.objects[static_cast<std::size_t>(object)].material)];
+  }
+  const std::vector<Material>& materials() const { return m_materials; }
+
+private:
+  void check_tables() const;
+
+  SceneDescription m_description;
+  ShapeSet m_shapes;
+  Light m_light;
+  std::vector<Material> m_materials;
+};
+
+} // namespace haarlight::renderer

@@ -1,0 +1,35 @@
+// The reflectance alone.
+
+#include "lobe_sampling.h"
+#include "sampler_kinds.h"
+
+namespace haarlight::renderer {
+namespace {
+
+class BrdfSampler : public Sampler {
+public:
+  void prepare(const ShadingPoint& point, const Material& material) override {
+    m_lobe.prepare(point, material);
+  }
+
+  void sample(const PointSource& points, std::span<DirectionSample> out) override {
+    m_points.resize(out.size());
+    points.fill(1, m_points);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = m_lobe.sample(m_points[i]);
+  }
+
+  float pdf(const Vec3& direction, std::size_t /*count*/) const override {
+    return m_lobe.pdf(direction);
+  }
+
+private:
+  Lobe m_lobe;
+  std::vector<Vec2> m_points;
+};
+
+} // namespace
+
+std::unique_ptr<Sampler> make_brdf_sampler() { return std::make_unique<BrdfSampler>(); }
+
+} // namespace haarlight::renderer

@@ -1,0 +1,38 @@
+// The light alone: pixels of the probe by cdf inversion.
+
+#include "sampler_kinds.h"
+
+namespace haarlight::renderer {
+namespace {
+
+class LightSampler : public Sampler {
+public:
+  explicit LightSampler(const Light& light) : m_light(light) {}
+
+  void prepare(const ShadingPoint& /*point*/, const Material& /*material*/) override {}
+
+  void sample(const PointSource& points, std::span<DirectionSample> out) override {
+    m_points.resize(out.size());
+    points.fill(0, m_points);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const probe::LightSample s = m_light.sample(m_points[i]);
+      out[i] = {s.direction, s.pdf};
+    }
+  }
+
+  float pdf(const Vec3& direction, std::size_t /*count*/) const override {
+    return m_light.pdf(direction);
+  }
+
+private:
+  const Light& m_light;
+  std::vector<Vec2> m_points;
+};
+
+} // namespace
+
+std::unique_ptr<Sampler> make_light_sampler(const Light& light) {
+  return std::make_unique<LightSampler>(light);
+}
+
+} // namespace haarlight::renderer

@@ -1,0 +1,118 @@
+// The paper's product: the stored trees of the nearest entries of two tables, multiplied and cached.
+
+#include "sampler_kinds.h"
+
+#include <probe/probe_maps.h>
+#include <wavelet/error.h>
+#include <wavelet/sphere_map.h>
+#include <wavelet/symmetry.h>
+
+#include <algorithm>
+
+namespace haarlight::renderer {
+namespace {
+
+int cell_of(float coordinate, int cells) {
+  return std::clamp(static_cast<int>(coordinate * static_cast<float>(cells)), 0, cells - 1);
+}
+
+/// Index of the EM cell of a mirror direction, the same for all points that share it.
+struct LightCell {
+  int column;
+  int row;
+  Frame frame;
+};
+
+class TableSampler : public Sampler {
+public:
+  explicit TableSampler(const Light& light) : m_table(*light.rotated_table()) {}
+
+  void prepare(const ShadingPoint& point, const Material& material) override {
+    const LightCell cell = light_cell(point);
+    m_frame = cell.frame;
+    const TreeTable& rolls = *material.roll_table();
+    const Vec3 n = m_frame.to_local(point.n);
+    const float theta_r = arctangent(std::sqrt(n.x() * n.x() + n.y() * n.y()), n.z());
+    const float phi = arctangent(n.y(), n.x());
+    const int column = cell_of(theta_r * (2.0F / pi), rolls.info().columns);
+    const int roll = cell_of(phi / (2.0F * pi) + (phi < 0 ? 1.0F : 0.0F), rolls.info().rolls);
+    m_product = &cached(cell, material, column, roll);
+  }
+
+  void sample(const PointSource& points, std::span<DirectionSample> out) override {
+    m_points.resize(out.size());
+    points.fill(2, m_points);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (m_product->empty()) {
+        out[i] = {Vec3::UnitZ(), 0};
+        continue;
+      }
+      const wavelet::Descent d = m_product->sample(m_points[i].x(), m_points[i].y());
+      out[i] = {m_frame.to_outer(wavelet::square_to_sphere(wavelet::end_point(d))),
+                d.pdf / wavelet::sphere_area};
+    }
+  }
+
+  float pdf(const Vec3& direction, std::size_t /*count*/) const override {
+    const Vec2 p = wavelet::sphere_to_square(m_frame.to_local(direction));
+    return m_product->pdf(p.x(), p.y()) / wavelet::sphere_area;
+  }
+
+  std::optional<Rgb> unshadowed() const override {
+    return Rgb(m_product->integral() * wavelet::sphere_area);
+  }
+
+  std::size_t leaves() const override { return m_product->leaf_count(); }
+
+private:
+  /// Direct-mapped: what neighbouring pixels share is found again, and memory stays bounded.
+  static constexpr std::size_t cache_size = 256;
+
+  struct Cached {
+    const Material* material = nullptr;
+    int light_cell = -1;
+    int column = -1;
+    int roll = -1;
+    wavelet::ProductTree product;
+  };
+
+  LightCell light_cell(const ShadingPoint& point) const {
+    const Vec2 p = wavelet::sphere_to_square(point.reflection.frame.n);
+    const int cells = m_table.info().columns;
+    const int column = cell_of(p.x(), cells);
+    const int row = cell_of(p.y(), cells);
+    return {column, row, probe::light_frame(column, row, cells)};
+  }
+
+  const wavelet::ProductTree& cached(const LightCell& cell, const Material& material, int column,
+                                     int roll) {
+    const int index = cell.row * m_table.info().columns + cell.column;
+    const std::uint32_t hash = hash_words(hash_words(static_cast<std::uint32_t>(index),
+                                                     static_cast<std::uint32_t>(column)),
+                                          static_cast<std::uint32_t>(roll));
+    Cached& place = m_cache[hash % cache_size];
+    if (place.material == &material && place.light_cell == index && place.column == column &&
+        place.roll == roll)
+      return place.product;
+    const TreeTable& rolls = *material.roll_table();
+    const wavelet::StoredRoll stored = wavelet::stored_roll(rolls.info(), roll);
+    place = {&material, index, column, roll,
+             wavelet::TableProduct::build(m_table.tree(cell.column, cell.row),
+                                          rolls.tree(column, stored.row), stored.symmetry)};
+    return place.product;
+  }
+
+  const TreeTable& m_table;
+  Frame m_frame;
+  const wavelet::ProductTree* m_product = nullptr;
+  std::vector<Cached> m_cache = std::vector<Cached>(cache_size);
+  std::vector<Vec2> m_points;
+};
+
+} // namespace
+
+std::unique_ptr<Sampler> make_table_sampler(const Light& light) {
+  return std::make_unique<TableSampler>(light);
+}
+
+} // namespace haarlight::renderer

@@ -1,0 +1,341 @@
+// Scene files: what they say, and what is said about wrong ones.
+
+#include <renderer/scene_file.h>
+#include <wavelet/error.h>
+
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace haarlight;
+using namespace haarlight::renderer;
+
+namespace {
+
+const std::string plain_scene = R"({ "film": {"width": 256, "height": 128},
+  "camera": {"type": "perspective", "from": [0, 0.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 30},
+  "light": {"probe": "grace_probe.hdr", "haar": "grace.haar"},
+  "materials": {"acrylic": {"brdf": "violet-acrylic.binary", "haar": "violet-acrylic.haar"},
+                "floor": {"lambert": [0.5, 0.25, 1]}},
+  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "acrylic"},
+              {"type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], "material": "floor"}] })";
+
+/// A scene file that is gone with the test.
+class SceneOnDisk {
+public:
+  explicit SceneOnDisk(const std::string& text) {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "haarlight_scene_XXXXXX").string();
+    m_folder = ::mkdtemp(pattern.data());
+    write(text);
+  }
+  ~SceneOnDisk() { std::filesystem::remove_all(m_folder); }
+  SceneOnDisk(const SceneOnDisk&) = delete;
+  SceneOnDisk& operator=(const SceneOnDisk&) = delete;
+
+  void write(const std::string& text) const {
+    std::ofstream(path(), std::ios::binary | std::ios::trunc) << text;
+  }
+  std::string path() const { return m_folder + "/scene.json"; }
+  const std::string& folder() const { return m_folder; }
+
+private:
+  std::string m_folder;
+};
+
+SceneDescription load(const std::string& text) { return load_scene(SceneOnDisk(text).path()); }
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t place = text.find(from);
+  REQUIRE(place != std::string::npos);
+  return text.replace(place, from.size(), to);
+}
+
+/// What load_scene says after the file's name.
+std::string complaint(const std::string& text) {
+  const SceneOnDisk scene(text);
+  try {
+    load_scene(scene.path());
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    REQUIRE(error.kind() == ErrorKind::Input);
+    REQUIRE(what.rfind(scene.path() + ": ", 0) == 0);
+    REQUIRE(what.find('\n') == std::string::npos);
+    return what.substr(scene.path().size() + 2);
+  }
+  return "loads";
+}
+
+std::string with_object(const std::string& object) {
+  return replaced(plain_scene, R"({"type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], )",
+                  object + ", ");
+}
+
+ObjectDescription object(const std::string& text) { return load(with_object(text)).objects[1]; }
+
+} // namespace
+
+TEST_CASE("a scene says what its file says", "[scene]") {
+  const SceneOnDisk disk(plain_scene);
+  const SceneDescription scene = load_scene(disk.path());
+  CHECK(scene.width == 256);
+  CHECK(scene.height == 128);
+  CHECK(scene.hash.size() == 16);
+  CHECK(scene.camera.projection == Projection::Perspective);
+  CHECK(scene.camera.from == Vec3(0, 0.5F, 6));
+  CHECK(scene.camera.fov == 30);
+  CHECK(scene.light.probe == disk.folder() + "/grace_probe.hdr");
+  CHECK(scene.light.haar == disk.folder() + "/grace.haar");
+  CHECK(scene.light.table.empty());
+  CHECK(scene.light.mapping == "auto");
+  CHECK(scene.light.background);
+  REQUIRE(scene.materials.size() == 2);
+  CHECK(scene.materials[0].name == "acrylic");
+  CHECK(scene.materials[0].brdf == disk.folder() + "/violet-acrylic.binary");
+  CHECK_FALSE(scene.materials[0].lambert);
+  CHECK((*scene.materials[1].lambert == Rgb(0.5F, 0.25F, 1)).all());
+  REQUIRE(scene.objects.size() == 2);
+  CHECK(std::get<Sphere>(scene.objects[0].shape).radius == 1);
+  CHECK(scene.objects[0].material == 0);
+  CHECK(std::get<Plane>(scene.objects[1].shape).point == Vec3(0, -1, 0));
+  CHECK(scene.objects[1].material == 1);
+}
+
+TEST_CASE("file names count from the scene's folder", "[scene]") {
+  const SceneOnDisk disk(replaced(plain_scene, "grace_probe.hdr", "/data/grace_probe.hdr"));
+  CHECK(load_scene(disk.path()).light.probe == "/data/grace_probe.hdr");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(disk.folder());
+  const SceneDescription scene = load_scene("scene.json");
+  std::filesystem::current_path(before);
+  CHECK(scene.light.haar == "grace.haar");
+}
+
+TEST_CASE("the light's and the camera's other keys", "[scene]") {
+  const SceneDescription scene = load(replaced(
+      replaced(plain_scene, R"("haar": "grace.haar")",
+               R"("table": "/t.haar", "mapping": "latlong", "rotate": -30, "background": false)"),
+      R"("type": "perspective", "from": [0, 0.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 30)",
+      R"("type": "orthographic", "from": [0, 0.5, 6], "to": [0, 0, 0], "height": 2.2)"));
+  CHECK(scene.light.table == "/t.haar");
+  CHECK(scene.light.mapping == "latlong");
+  CHECK(scene.light.rotate == -30);
+  CHECK_FALSE(scene.light.background);
+  CHECK(scene.camera.projection == Projection::Orthographic);
+  CHECK(scene.camera.height == Approx(2.2));
+  CHECK(scene.camera.up == Vec3::UnitY());
+}
+
+TEST_CASE("every shape is read", "[scene]") {
+  const auto disk =
+      object(R"({"type": "disk", "center": [1, 2, 3], "normal": [0, 0, 2], "radius": 4)");
+  CHECK(std::get<Disk>(disk.shape).radius == 4);
+  CHECK(std::get<Disk>(disk.shape).normal == Vec3(0, 0, 2));
+  const auto box = object(R"({"type": "box", "min": [1, 2, 3], "max": [4, 5, 6])");
+  CHECK(std::get<Box>(box.shape).high == Vec3(4, 5, 6));
+  const auto cylinder =
+      object(R"({"type": "cylinder", "base": [1, 2, 3], "top": [4, 5, 6], "radius": 2)");
+  CHECK(std::get<Cylinder>(cylinder.shape).top == Vec3(4, 5, 6));
+  const auto cone = object(R"({"type": "cone", "base": [1, 2, 3], "apex": [4, 5, 6], "radius": 2)");
+  CHECK(std::get<Cone>(cone.shape).apex == Vec3(4, 5, 6));
+  const auto torus = object(R"({"type": "torus", "center": [1, 2, 3], "axis": [0, 1, 0],
+                                "major_radius": 2, "minor_radius": 0.5)");
+  CHECK(std::get<Torus>(torus.shape).major_radius == 2);
+  CHECK(std::get<Torus>(torus.shape).minor_radius == 0.5F);
+}
+
+TEST_CASE("transforms are read step by step", "[scene]") {
+  const std::string box = R"({"type": "box", "min": [-1, -1, -1], "max": [1, 1, 1], "transform": )";
+  const auto apply = [&](const std::string& steps) {
+    return object(box + steps).transform.point({1, 2, 3});
+  };
+  const auto near = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return (a - b).norm() < 1e-12;
+  };
+  CHECK(near(apply(R"({"translate": [1, 0, 0]})"), {2, 2, 3}));
+  CHECK(near(apply(R"({"scale": 2})"), {2, 4, 6}));
+  CHECK(near(apply(R"([{"scale": [1, -1, 2]}, {"translate": [1, 1, 1]}])"), {2, -1, 7}));
+  CHECK(near(apply(R"({"rotate": {"axis": [0, 0, 5], "angle": 90}})"), {-2, 1, 3}));
+  CHECK(near(apply(R"({"rotate": [90, 0, 90]})"), {3, 1, 2}));
+  CHECK(near(apply(R"({"matrix": [1, 0, 0, 4, 0, 0, 1, 5, 0, 1, 0, 6, 0, 0, 0, 1]})"), {5, 8, 8}));
+  CHECK(near(apply("[]"), {1, 2, 3}));
+}
+
+TEST_CASE("an empty stage is a scene", "[scene]") {
+  CHECK(load(R"({"film": {"width": 1, "height": 1}, "light": {"haar": "a.haar"}, "materials": {},
+    "camera": {"type": "perspective", "from": [0, 0, 1], "to": [0, 0, 0], "fov": 30},
+    "objects": []})")
+            .objects.empty());
+}
+
+TEST_CASE("text that is no JSON is refused with the byte", "[scene]") {
+  const SceneOnDisk disk(R"({"film": {"width": 256,, "height": 4}})");
+  try {
+    load_scene(disk.path());
+    FAIL("loads");
+  } catch (const Error& error) {
+    REQUIRE(error.offset());
+    CHECK(*error.offset() == 23);
+    CHECK(std::string(error.what()).find("line 1, column 24") != std::string::npos);
+  }
+  CHECK(complaint("").rfind("byte 0: is no JSON", 0) == 0);
+  CHECK(complaint(plain_scene.substr(0, 300)).rfind("byte 300: is no JSON", 0) == 0);
+  CHECK(complaint(plain_scene + "}").find("is no JSON") != std::string::npos);
+  CHECK(complaint("{\"film\": \xFF\xFE\n}").find("is no JSON") != std::string::npos);
+  CHECK(complaint(replaced(plain_scene, "0.5, 6", "1e999, 6")).find("is no JSON") !=
+        std::string::npos);
+  CHECK(complaint(std::string(100000, '[')) == "nests deeper than 64 levels");
+  CHECK(complaint("[]") == "must be an object, is an array");
+}
+
+TEST_CASE("files that cannot be scenes are refused", "[scene]") {
+  const SceneOnDisk disk(plain_scene);
+  CHECK_THROWS_AS(load_scene(disk.folder() + "/missing.json"), Error);
+  CHECK_THROWS_AS(load_scene(disk.folder()), Error);
+}
+
+TEST_CASE("each mistake is named with its place and the remedy", "[scene]") {
+  const struct {
+    std::string from;
+    std::string to;
+    std::string says;
+  } mistakes[] = {
+      {R"("width": 256)", R"("widht": 256)",
+       R"(film: unknown key "widht", the nearest known is "width")"},
+      {R"("film")", R"("Film")", R"(unknown key "Film", the nearest known is "film")"},
+      {R"("radius": 1)", R"("raduis": 1)",
+       R"(objects[0]: unknown key "raduis", the nearest known is "radius")"},
+      {R"("normal")", R"("radius")", R"(objects[1]: unknown key "radius")"},
+      {R"("brdf")", R"("bdrf")",
+       R"(materials["acrylic"]: unknown key "bdrf", the nearest known is "brdf")"},
+      {R"("fov": 30)", R"("height": 30)", R"(camera: unknown key "height")"},
+      {R"("type": "sphere")", R"("type": "shpere")",
+       R"(objects[0].type: unknown shape "shpere", the nearest known is "sphere")"},
+      {R"("perspective")", R"("prespective")",
+       R"(camera.type: unknown camera "prespective", the nearest known is "perspective")"},
+      {R"("material": "floor")", R"("material": "flor")",
+       R"(objects[1].material: unknown material "flor", the nearest known is "floor")"},
+      {R"("haar": "grace.haar")", R"("mapping": "lat-long")",
+       R"(light.mapping: unknown mapping "lat-long", the nearest known is "latlong")"},
+      {R"("haar": "grace.haar")", R"("probe": "grace.hdr")",
+       R"(the key "probe" stands twice in one object)"},
+      {R"("width": 256, )", "", R"(film: the key "width" is missing)"},
+      {R"(, "material": "floor")", "", R"(objects[1]: the key "material" is missing)"},
+      {R"("radius": 1, )", "", R"(objects[0]: the key "radius" is missing)"},
+      {R"("width": 256)", R"("width": "256")", "film.width: must be a number, is a string"},
+      {R"("width": 256)", R"("width": 2.5)", "film.width: must be a whole number"},
+      {R"("width": 256)", R"("width": 0)", "film: a film of 0x128 pixels has no area"},
+      {R"("width": 256)", R"("width": 1e9)", "film: a film of 1000000000x128 pixels is too large"},
+      {R"("radius": 1)", R"("radius": -1)", "objects[0].radius: must be positive"},
+      {R"("radius": 1)", R"("radius": 1e-60)", "objects[0].radius: must be positive"},
+      {R"("radius": 1)", R"("radius": 1e30)", "objects[0].radius: must lie within -1e18 and 1e18"},
+      {R"("radius": 1)", R"("radius": null)", "objects[0].radius: must be a number, is null"},
+      {R"([0, -1, 0])", R"([0, -1])", "objects[1].point: must hold 3 numbers, holds 2 values"},
+      {R"([0, -1, 0])", R"([0, true, 0])",
+       "objects[1].point[1]: must be a number, is true or false"},
+      {R"("normal": [0, 1, 0])", R"("normal": [0, 0, 0])",
+       "objects[1].normal: must not be the zero vector"},
+      {R"("up": [0, 1, 0])", R"("up": [0, 0, 0])", "camera.up: must not be the zero vector"},
+      {R"("up": [0, 1, 0])", R"("up": [0, -1, -12])",
+       "camera: up must not be parallel to the view"},
+      {R"("to": [0, 0, 0])", R"("to": [0, 0.5, 6])",
+       "camera.to: must not be the same point as from"},
+      {R"("fov": 30)", R"("fov": 180)", "camera.fov: must lie between 0.001 and 179 degrees"},
+      {R"("probe": "grace_probe.hdr", "haar": "grace.haar")", "",
+       "light: needs at least one of the keys probe, haar, table"},
+      {R"("grace.haar")", R"("")", "light.haar: must not be empty"},
+      {R"("grace.haar")", R"("a\u0000b")", "light.haar: must not contain a NUL"},
+      {R"("haar": "grace.haar")", R"("rotate": "left")",
+       "light.rotate: must be a number, is a string"},
+      {R"("haar": "grace.haar")", R"("background": 1)",
+       "light.background: must be true or false, is a number"},
+      {R"("lambert": [0.5, 0.25, 1])", "",
+       R"(materials["floor"]: needs at least one of the keys brdf, haar, table, or lambert)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("lambert": [0.5, 0.25, 1], "brdf": "a")",
+       R"(materials["floor"]: lambert stands alone)"},
+      {R"([0.5, 0.25, 1])", R"([0.5, 1.25, 1])",
+       R"(materials["floor"].lambert: must hold albedos between 0 and 1)"}};
+  for (const auto& mistake : mistakes) {
+    INFO(mistake.to << " instead of " << mistake.from);
+    const std::string text = complaint(replaced(plain_scene, mistake.from, mistake.to));
+    CHECK(text.rfind(mistake.says, 0) == 0);
+    CHECK((text.rfind(mistake.says, 0) == 0 ? "" : text) == "");
+  }
+}
+
+TEST_CASE("each mistaken shape and transform is named", "[scene]") {
+  const std::string box = R"({"type": "box", "min": [-1, -1, -1], "max": [1, 1, 1], "transform": )";
+  const struct {
+    std::string object;
+    std::string says;
+  } mistakes[] = {
+      {R"({"type": "box", "min": [0, 0, 0], "max": [1, 0, 1])",
+       "objects[1].max: must be above min in x, y and z"},
+      {R"({"type": "cylinder", "base": [1, 2, 3], "top": [1, 2, 3], "radius": 2)",
+       "objects[1].top: must not be the same point as base"},
+      {R"({"type": "cone", "base": [1, 2, 3], "apex": [1, 2, 3], "radius": 2)",
+       "objects[1].apex: must not be the same point as base"},
+      {R"({"type": "torus", "center": [0, 0, 0], "axis": [0, 1, 0], "major_radius": 1,
+           "minor_radius": 1)",
+       "objects[1].minor_radius: must be below major_radius"},
+      {R"({"type": "torus", "center": [0, 0, 0], "axis": [0, 0, 0], "major_radius": 1,
+           "minor_radius": 0.5)",
+       "objects[1].axis: must not be the zero vector"},
+      {box + R"({"scale": 0})", "objects[1].transform.scale: must not be zero"},
+      {box + R"([{"scale": 1}, {"scale": [1, 0, 1]}])",
+       "objects[1].transform[1].scale: must not be zero"},
+      {box + R"([{"scael": 1}])",
+       R"(objects[1].transform[0]: unknown key "scael", the nearest known is "scale")"},
+      {box + R"({"scale": 1, "translate": [1, 0, 0]})",
+       "objects[1].transform: must hold exactly one of"},
+      {box + R"({"rotate": {"axis": [0, 0, 0], "angle": 3}})",
+       "objects[1].transform.rotate.axis: must not be the zero vector"},
+      {box + R"({"rotate": 30})", "objects[1].transform.rotate: must be an array, is a number"},
+      {box + R"({"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1]})",
+       "objects[1].transform.matrix: must end with the row 0, 0, 0, 1"},
+      {box + R"({"matrix": [1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]})",
+       "objects[1].transform: cannot be inverted"},
+      {box + R"([{"scale": 1e12}, {"scale": 1e12}])", "objects[1].transform: cannot be inverted"},
+      {box + R"("left")", "objects[1].transform: must be an array, is a string"}};
+  for (const auto& mistake : mistakes) {
+    INFO(mistake.object);
+    const std::string text = complaint(with_object(mistake.object));
+    CHECK((text.rfind(mistake.says, 0) == 0 ? "" : text) == "");
+  }
+}
+
+TEST_CASE("names from the file cannot break the message", "[scene]") {
+  const std::string text = complaint(
+      replaced(plain_scene, R"("radius")", R"("a\nb\u0007)" + std::string(9000, 'x') + '"'));
+  CHECK(text.find(R"(unknown key "a?b?xxx)") != std::string::npos);
+  CHECK(text.size() < 400);
+}
+
+TEST_CASE("nonsense is refused or read, and nothing else", "[scene]") {
+  const SceneOnDisk disk(plain_scene);
+  std::mt19937 random(9);
+  const std::string alphabet = "{}[]\",:0123456789.eE+-truefalsn \\\n\xC3\x00";
+  int refused = 0;
+  for (int i = 0; i < 1500; ++i) {
+    std::string text = plain_scene;
+    for (unsigned edits = 1 + random() % 4; edits > 0; --edits) {
+      const std::size_t place = random() % text.size();
+      if (random() % 3 == 0)
+        text.erase(place, 1 + random() % 20);
+      else
+        text[place] = alphabet[random() % alphabet.size()];
+    }
+    disk.write(text);
+    try {
+      load_scene(disk.path());
+    } catch (const Error& error) {
+      REQUIRE(std::string(error.what()).find('\n') == std::string::npos);
+      ++refused;
+    }
+  }
+  CHECK(refused > 500);
+}

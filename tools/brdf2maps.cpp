@@ -1,0 +1,77 @@
+// brdf2maps: a measured BRDF to a set of maps in the reflection frame.
+#include <support/map_output.h>
+#include <support/tool.h>
+
+#include <brdf/bilateral.h>
+#include <brdf/brdf_maps.h>
+
+using namespace haarlight;
+
+namespace {
+
+enum class FoldChoice { Auto, None, Rotations, Mirrors };
+
+struct Options {
+  std::string input;
+  brdf::BrdfMapOptions maps;
+  brdf::Lookup lookup = brdf::Lookup::Trilinear;
+  FoldChoice fold = FoldChoice::Auto;
+  bool no_cosine = false;
+  tool::MapOutput output;
+};
+
+void declare(tool::Tool& app, Options& o) {
+  app.input(o.input, "IN.binary", "MERL file, 90 x 90 x 180 or 90 x 90 x 360 bins");
+  tool::add_map_output(app, o.output);
+  app.value(o.maps.size, "--size",
+            "Pixels along a map's side, a power of two; 0 = 512, or 128 with rolls", 0, 8192);
+  app.value(o.maps.theta, "--theta", "Cells of theta_r over 90 degrees", 1, 4096);
+  app.value(o.maps.roll, "--roll", "Cells of the roll phi over 360 degrees; 1 = theta_r only", 1,
+            4096);
+  app.value(o.maps.supersample, "--supersample",
+            "Samples along a pixel's side at least; lobes narrower than a pixel get more", 1, 64);
+  app.flag(o.no_cosine, "--no-cosine", "Leave the factor max(0, cos) out of the maps");
+  app.choice(o.lookup, "--lookup",
+             {{"trilinear", brdf::Lookup::Trilinear}, {"nearest", brdf::Lookup::Nearest}},
+             "How the file's cells are read");
+  app.choice(o.fold, "--fold",
+             {{"auto", FoldChoice::Auto},
+              {"none", FoldChoice::None},
+              {"rotations", FoldChoice::Rotations},
+              {"mirrors", FoldChoice::Mirrors}},
+             "Rolls to leave out by symmetry: auto = rotations where the rolls are a multiple of "
+             "4; mirrors averages the file with its bilateral mirror image");
+}
+
+brdf::BrdfMapOptions map_options(const Options& o) {
+  brdf::BrdfMapOptions maps = o.maps;
+  maps.cosine = !o.no_cosine;
+  if (o.fold == FoldChoice::None)
+    maps.fold = wavelet::Fold::None;
+  if (o.fold == FoldChoice::Rotations)
+    maps.fold = wavelet::Fold::Rotations;
+  if (o.fold == FoldChoice::Mirrors)
+    maps.fold = wavelet::Fold::Mirrors;
+  if (const auto problem = brdf::problem_of(maps))
+    throw tool::UsageError(*problem);
+  return maps;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool app("brdf2maps",
+                 "Resamples a measured BRDF into maps of f_r cos (1/sr) over the sphere, in frames "
+                 "about the mirror direction, one per angle theta_r of the normal and roll phi.");
+  Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] {
+    const brdf::BrdfMapOptions map_settings = map_options(options);
+    brdf::MeasuredBrdf table(options.input, options.lookup);
+    tool::Report report;
+    report.add("source", table.name())
+        .add("bilateral_asymmetry", brdf::bilateral_asymmetry(table));
+    const brdf::BrdfMaps maps(std::move(table), map_settings);
+    return tool::write_map_set(app, maps, options.output, report);
+  });
+}

@@ -1,0 +1,136 @@
+// haarinfo: what a .haar file holds.
+#include <support/inspect.h>
+#include <support/map_output.h>
+#include <support/tool.h>
+
+#include <image/image_exr.h>
+#include <image/png.h>
+
+#include <wavelet/error.h>
+#include <wavelet/tree_set.h>
+
+#include <cmath>
+#include <cstring>
+
+using namespace haarlight;
+
+namespace {
+
+enum class Dump { None, Csv };
+
+struct Options {
+  std::string path;
+  bool validate = false;
+  std::vector<double> tree;
+  std::optional<int> level;
+  std::string image;
+  Dump dump = Dump::None;
+};
+
+void declare(tool::Tool& app, Options& options) {
+  app.input(options.path, "FILE.haar", "File to look into");
+  app.flag(options.validate, "--validate",
+           "Only check the file; exit code 1 if it breaks a rule of its format");
+  app.values(options.tree, "--tree", "Only the tree of this column and row", 2, 0, 65535);
+  app.value(
+      options.level, "--level",
+      "Level of reconstructions, 2^level pixels a side [the finest; for a picture of the whole "
+      "set the finest that stays within 2048 pixels a side]",
+      0, 13);
+  app.text(
+      options.image, "--image", "OUT.png|OUT.exr",
+      "Write a picture of the tree or of the whole set; a .png is scaled to a mean of 0.18 and "
+      "tone mapped, an .exr holds the values");
+  app.choice(options.dump, "--dump", {{"csv", Dump::Csv}},
+             "Print all differences in place of the report: column,row,level,x,y,type,r,g,b");
+  app.offer_json();
+}
+
+/// A file that is a .haar by its first bytes can be valid or not; any other is bad input.
+bool has_magic(const std::string& path) {
+  const InputFile file(path);
+  return file.bytes().size() >= 8 && std::memcmp(file.bytes().data(), "\x89HAAR", 5) == 0;
+}
+
+int validate(const tool::Tool& app, const std::string& path) {
+  tool::Report report;
+  report.add("file", path);
+  try {
+    const wavelet::TreeSet set(path);
+    report.add("valid", true);
+    app.print(report);
+    return tool::exit_ok;
+  } catch (const Error& error) {
+    if (!has_magic(path))
+      throw;
+    report.add("valid", false).add("problem", error.what());
+    app.print(report);
+    app.note(error.what());
+    return tool::exit_no;
+  }
+}
+
+std::vector<tool::TreeIndex> chosen_trees(const Options& options, const wavelet::TreeSet& set) {
+  if (options.tree.empty())
+    return tool::all_trees(set);
+  const wavelet::SetInfo& info = set.info();
+  const double column = options.tree[0];
+  const double row = options.tree[1];
+  if (column != std::floor(column) || row != std::floor(row) || column >= info.columns ||
+      row >= info.rows)
+    throw tool::UsageError("--tree: the set has columns 0 to " + std::to_string(info.columns - 1) +
+                           " and rows 0 to " + std::to_string(info.rows - 1));
+  return {{static_cast<int>(column), static_cast<int>(row)}};
+}
+
+void write_image(const Options& options, const wavelet::TreeSet& set,
+                 const std::vector<tool::TreeIndex>& trees) {
+  const bool single = !options.tree.empty();
+  const int level = options.level.value_or(single ? set.levels() : tool::atlas_level(set));
+  if (!single && tool::atlas_side(set, level) > 16384)
+    throw tool::UsageError("--level: the picture would be wider than 16384 pixels");
+  image::Picture picture = single
+                               ? tool::tree_picture(set.tree(trees[0].column, trees[0].row), level)
+                               : tool::atlas(set, level);
+  if (tool::has_extension(options.image, ".exr"))
+    return image::write_exr(options.image, picture);
+  tool::expose(picture);
+  image::write_png(options.image, picture, {.tone_map = image::ToneMap::Filmic});
+}
+
+void check(const Options& options) {
+  const std::string& image = options.image;
+  if (!image.empty() && !tool::has_extension(image, ".png") && !tool::has_extension(image, ".exr"))
+    throw tool::UsageError("--image: '" + image + "' ends in neither .png nor .exr");
+}
+
+int inspect(const tool::Tool& app, const Options& options) {
+  const wavelet::TreeSet set(options.path);
+  if (options.level.value_or(0) > set.levels())
+    throw tool::UsageError("--level: the set has levels 0 to " + std::to_string(set.levels()));
+  const std::vector<tool::TreeIndex> trees = chosen_trees(options, set);
+  if (!options.image.empty())
+    write_image(options, set, trees);
+  if (options.dump == Dump::Csv) {
+    tool::dump_csv(set, trees, [&](const std::string& lines) { app.print(lines); });
+    return tool::exit_ok;
+  }
+  tool::Report report = tool::describe_header(set);
+  const int level = options.level.value_or(set.levels());
+  tool::describe_figures(tool::measure_trees(set, trees, level), set.levels(),
+                         app.json() || app.verbose(), report);
+  app.print(report);
+  return tool::exit_ok;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool app("haarinfo", "Tells what a .haar file holds, checks it and draws it.");
+  Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] {
+    check(options);
+    return options.validate ? validate(app, options.path) : inspect(app, options);
+  });
+}

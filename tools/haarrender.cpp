@@ -1,0 +1,111 @@
+// haarrender: renders a scene lit by a probe.
+#include <render/film_output.h>
+#include <support/progress.h>
+#include <support/tool.h>
+
+#include <renderer/render.h>
+#include <renderer/scene_file.h>
+#include <wavelet/output_file.h>
+
+using namespace haarlight;
+using namespace haarlight::renderer;
+
+namespace {
+
+struct Options {
+  std::string scene;
+  std::string output;
+  std::string png;
+  std::string size;
+  double exposure = 0;
+  std::uint64_t seed = 0;
+  SourceLookups lookups;
+  RenderOptions render;
+};
+
+void declare_sampling(tool::Tool& app, RenderOptions& render) {
+  app.choice(render.sampler, "--sampler",
+             {{"product", SamplerKind::Product},
+              {"product-table", SamplerKind::ProductTable},
+              {"light", SamplerKind::Light},
+              {"brdf", SamplerKind::Brdf},
+              {"mis", SamplerKind::Mis}},
+             "Where light directions are drawn from");
+  app.choice(render.estimator, "--estimator",
+             {{"unbiased", Estimator::Unbiased},
+              {"bidirectional", Estimator::Bidirectional},
+              {"ratio", Estimator::Ratio}},
+             "How samples become radiance");
+  app.choice(render.points, "--points", {{"random", Points::Random}, {"sobol", Points::Sobol}},
+             "Random numbers, or Owen-scrambled Sobol points");
+  app.value(render.spp, "--spp", "Light samples per pixel; with --time-limit of the first pass", 1,
+            1 << 20);
+  app.value(render.time_limit, "--time-limit",
+            "Seconds to go on in passes for; the result then depends on the machine; 0 = one pass",
+            0, 1e6);
+  app.value(render.product.variance_bound, "--product-variance",
+            "Relative variance per sample at which products stop refining", 1e-5, 100);
+  app.value(render.product.max_leaves, "--product-leaves", "Leaves of a product at most", 64,
+            1 << 20);
+}
+
+void declare(tool::Tool& app, Options& options) {
+  app.input(options.scene, "SCENE.json", "Scene; renderer/SCENE.md documents the format");
+  app.output(options.output, "OUT.exr", "Picture to write: R, G, B and further channels");
+  declare_sampling(app, options.render);
+  app.value(options.seed, "--seed", "Tells random point sets apart, below 2^32");
+  app.choice(options.lookups.brdf, "--brdf-lookup",
+             {{"trilinear", brdf::Lookup::Trilinear}, {"nearest", brdf::Lookup::Nearest}},
+             "How measured BRDFs are looked up");
+  app.choice(options.lookups.probe, "--probe-lookup",
+             {{"nearest", probe::Lookup::Nearest}, {"bilinear", probe::Lookup::Bilinear}},
+             "How the probe is looked up");
+  app.text(options.size, "--size", "WxH", "Size of the film in pixels, in place of the scene's");
+  app.text(options.png, "--png", "OUT.png", "Write a tone-mapped preview too");
+  app.value(options.exposure, "--exposure", "Stops that the preview is brightened by", -30, 30);
+  app.offer_json();
+}
+
+/// Throws now rather than after the work if nothing can be written there.
+void require_writable(const std::string& path) { const OutputFile trial(path); }
+
+/// Refuses contradictions and unwritable outputs before any work is done.
+void check(Options& options) {
+  if (const auto problem = problem_of(options.render.sampler, options.render.estimator))
+    throw tool::UsageError(*problem);
+  if (options.seed > 0xFFFFFFFFU)
+    throw tool::UsageError("--seed: must be below 2^32");
+  options.render.seed = static_cast<std::uint32_t>(options.seed);
+  require_writable(options.output);
+  if (!options.png.empty())
+    require_writable(options.png);
+}
+
+int render_scene(const tool::Tool& app, Options& options) {
+  check(options);
+  SceneDescription description = load_scene(options.scene);
+  if (!options.size.empty())
+    tool::set_film_size(options.size, description);
+  const LoadedScene scene(description, options.lookups, options.render.sampler,
+                          needs_unshadowed(options.render.estimator));
+  if (!scene.light().note().empty())
+    app.detail(scene.light().note());
+  tool::ProgressBar bar(app, "rendering");
+  const RenderResult result =
+      render(scene, options.render, description.width, description.height,
+             [&](double share) { bar(static_cast<int>(1000 * share), 1000); });
+  tool::write_film_exr(options.output, result, description, options.render);
+  if (!options.png.empty())
+    tool::write_film_png(options.png, result.film, options.exposure);
+  app.print(tool::describe(result));
+  return tool::exit_ok;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool app("haarrender", "Renders a scene of analytic shapes lit by a probe.");
+  Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] { return render_scene(app, options); });
+}

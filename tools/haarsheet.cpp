@@ -1,0 +1,103 @@
+// haarsheet: pictures side by side, compared with a reference.
+#include <support/map_output.h>
+#include <support/tool.h>
+#include <support/words.h>
+
+#include <image/contact_sheet.h>
+#include <image/image_exr.h>
+#include <image/png.h>
+
+#include <wavelet/error.h>
+#include <wavelet/input_file.h>
+
+#include <cmath>
+
+using namespace haarlight;
+
+namespace {
+
+struct Options {
+  std::vector<std::string> paths;
+  std::vector<std::string> captions;
+  std::string reference;
+  std::string output;
+  image::PngOptions tone;
+  image::SheetOptions sheet;
+};
+
+void declare(tool::Tool& app, Options& options) {
+  app.inputs(options.paths, "PICTURES", "EXR or PNG pictures");
+  app.output(options.output, "OUT.png", "Contact sheet to write");
+  app.texts(options.captions, "--caption", "TEXT",
+            "Caption of a picture, one option for each in their order [the file's name]");
+  app.text(options.reference, "--reference", "IN.exr",
+           "Print each picture's error relative to this one, and add it to the captions");
+  app.value(options.sheet.columns, "--columns", "Pictures per row; 0 = as square as possible", 0,
+            1000);
+  app.value(options.sheet.scale, "--font-scale", "Pixels per pixel of the font", 1, 16);
+  app.value(options.tone.exposure, "--exposure", "Stops of exposure, for EXR pictures", -50, 50);
+  app.choice(options.tone.tone_map, "--tone-map",
+             {{"clamp", image::ToneMap::Clamp}, {"filmic", image::ToneMap::Filmic}},
+             "Tone map, for EXR pictures");
+  app.offer_json();
+}
+
+image::Picture read(const std::string& path) {
+  return tool::has_extension(path, ".png") ? image::read_png(path) : image::read_exr(path);
+}
+
+/// Root of the mean squared difference of all channels, relative to the reference's root mean
+/// square.
+double relative_error(const image::Picture& picture, const image::Picture& reference,
+                      const std::string& path) {
+  if (picture.width != reference.width || picture.height != reference.height)
+    throw_input_error(path, "is not of the reference's size, " + std::to_string(reference.width) +
+                                " x " + std::to_string(reference.height) + " pixels");
+  double difference = 0;
+  double power = 0;
+  for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
+    const auto wanted = static_cast<double>(reference.rgb[i]);
+    const double error = static_cast<double>(picture.rgb[i]) - wanted;
+    difference += error * error;
+    power += wanted * wanted;
+  }
+  return power > 0 ? std::sqrt(difference / power) : 0;
+}
+
+std::string caption_of(const Options& options, std::size_t i) {
+  return options.captions.empty() ? base_name(options.paths[i]) : options.captions[i];
+}
+
+int make_sheet(const tool::Tool& app, const Options& options) {
+  if (!options.captions.empty() && options.captions.size() != options.paths.size())
+    throw tool::UsageError("as many --caption options as pictures are needed");
+  const bool compare = !options.reference.empty();
+  const image::Picture reference = compare ? read(options.reference) : image::Picture();
+  tool::Report report;
+  std::vector<image::SheetEntry> entries;
+  for (std::size_t i = 0; i < options.paths.size(); ++i) {
+    const std::string& path = options.paths[i];
+    image::SheetEntry entry{read(path), caption_of(options, i)};
+    tool::Report& row = report.row("pictures").add("picture", entry.caption);
+    if (compare) {
+      const double error = relative_error(entry.picture, reference, path);
+      row.add("relative_error", error);
+      entry.caption += " ERROR " + tool::short_text(std::round(error * 1e4) / 1e4);
+    }
+    if (!tool::has_extension(path, ".png"))
+      image::tone_map(entry.picture, options.tone);
+    entries.push_back(std::move(entry));
+  }
+  image::write_png(options.output, image::contact_sheet(entries, options.sheet));
+  app.print(report);
+  return tool::exit_ok;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool app("haarsheet", "Puts pictures side by side on one sheet and compares them.");
+  Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] { return make_sheet(app, options); });
+}

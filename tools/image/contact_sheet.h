@@ -1,0 +1,30 @@
+#pragma once
+// Many pictures on one sheet, each under a caption.
+
+#include <image/image.h>
+
+#include <string>
+#include <vector>
+
+namespace haarlight::image {
+
+struct SheetEntry {
+  Picture picture;
+  std::string caption; ///< ASCII; what the font lacks shows as a blank
+};
+
+struct SheetOptions {
+  int columns = 0; ///< pictures per row; 0 = as square a sheet as possible
+  int scale = 1;   ///< pixels per pixel of the 5 × 7 font
+  int margin = 4;  ///< pixels between pictures
+};
+
+/// Cells are as large as the largest picture; captions are cut to the cell's width.
+/// @param entries at least one
+Picture contact_sheet(const std::vector<SheetEntry>& entries, const SheetOptions& options = {});
+
+/// Draws one line of text in white, its upper left corner at (x, y); cut at `right` and at the
+/// picture's edges. A character takes 6 × 8 font pixels.
+void draw_text(Picture& picture, int x, int y, int right, int scale, const std::string& text);
+
+} // namespace haarlight::image

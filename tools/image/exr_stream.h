@@ -1,0 +1,80 @@
+#pragma once
+// OpenEXR's streams over the toolkit's files, and a look at a file before OpenEXR sees it.
+// For the sources of this folder only: it shows OpenEXR's headers.
+
+#include <wavelet/error.h>
+#include <wavelet/input_file.h>
+#include <wavelet/output_file.h>
+
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace haarlight::image {
+
+/// Writes into an OutputFile. OpenEXR swallows errors while it closes a file, so the first one is
+/// kept and nothing is written after it.
+class ExrOutputStream : public Imf::OStream {
+public:
+  explicit ExrOutputStream(OutputFile& file);
+
+  void write(const char bytes[], int count) override;
+  std::uint64_t tellp() override { return m_file.position(); }
+  void seekp(std::uint64_t position) override { m_file.seek(position); }
+
+  /// Bytes of the file so far.
+  std::uint64_t size() const { return m_size; }
+
+  /// @throws Error(Output), the first that occurred
+  void rethrow() const;
+
+private:
+  OutputFile& m_file;
+  std::optional<Error> m_error;
+  std::uint64_t m_size = 0;
+};
+
+/// Reads from mapped bytes, which must outlive it.
+class ExrInputStream : public Imf::IStream {
+public:
+  explicit ExrInputStream(const InputFile& file);
+
+  bool isMemoryMapped() const override { return true; }
+  char* readMemoryMapped(int count) override;
+  bool read(char bytes[], int count) override;
+  std::uint64_t tellg() override { return m_position; }
+  void seekg(std::uint64_t position) override { m_position = position; }
+
+private:
+  const char* take(int count);
+
+  std::span<const std::byte> m_bytes;
+  std::uint64_t m_position = 0;
+};
+
+/// The header of a single-part EXR image, read without believing sizes in it: its attributes lie
+/// within the file, and the file is long enough for the table of its tiles or lines.
+/// @throws Error(Input)
+Imf::Header read_exr_header(const InputFile& file);
+
+/// A check for OutputFile::commit: the file opens and is complete. @throws Error(Output)
+void check_exr_complete(const std::string& temporary_path);
+
+/// Calls `body`, turning what OpenEXR throws into Error(Input) for `path`.
+template <class F>
+auto with_input_errors(const std::string& path, F&& body) {
+  try {
+    return body();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw_input_error(path, std::string("cannot be decoded: ") + error.what());
+  }
+}
+
+} // namespace haarlight::image

@@ -1,0 +1,38 @@
+#pragma once
+// Ordinary pictures as EXR: scanlines, named float channels, ZIP.
+
+#include <image/image.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace haarlight::image {
+
+/// One channel of an image, somewhere in memory: pixel (x, y) is first[(y·width + x)·stride].
+struct ExrChannel {
+  std::string name; ///< as in "R" or "N.X"
+  const float* first = nullptr;
+  int stride = 1; ///< floats from one pixel to the next
+};
+
+struct ExrImage {
+  int width = 0;
+  int height = 0;
+  std::vector<ExrChannel> channels;
+  std::vector<std::pair<std::string, std::string>> texts; ///< header attributes by name
+  std::vector<std::pair<std::string, double>> numbers;
+  std::vector<std::pair<std::string, int>> integers;
+};
+
+/// Writes the image whole or not at all; the same bytes for any number of threads.
+/// @throws Error(Output)
+void write_exr(const std::string& path, const ExrImage& image);
+
+/// A picture as channels R, G, B. @throws Error(Output)
+void write_exr(const std::string& path, const Picture& picture);
+
+/// R, G, B (or Y) of any single-part EXR image. @throws Error(Input)
+Picture read_exr(const std::string& path);
+
+} // namespace haarlight::image

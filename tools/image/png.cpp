@@ -1,0 +1,110 @@
+#include <image/png.h>
+
+#include <wavelet/error.h>
+#include <wavelet/input_file.h>
+#include <wavelet/output_file.h>
+
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace haarlight::image {
+namespace {
+
+double linear_of(double code) {
+  const double value = code / 255;
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+/// Linear values halfway (in codes) between neighbouring codes.
+std::array<float, 255> make_thresholds() {
+  std::array<float, 255> thresholds{};
+  for (std::size_t i = 0; i < thresholds.size(); ++i)
+    thresholds[i] = static_cast<float>(linear_of(static_cast<double>(i) + 0.5));
+  return thresholds;
+}
+
+float filmic(float x) {
+  return x <= 0 ? 0 : (x * (2.51F * x + 0.03F)) / (x * (2.43F * x + 0.59F) + 0.14F);
+}
+
+png_image description(int width, int height) {
+  png_image image;
+  std::memset(&image, 0, sizeof image);
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(width);
+  image.height = static_cast<png_uint_32>(height);
+  image.format = PNG_FORMAT_RGB;
+  return image;
+}
+
+/// Frees what libpng holds for a picture that is being read.
+struct Cleaner {
+  png_image& image;
+  explicit Cleaner(png_image& owned) : image(owned) {}
+  ~Cleaner() { png_image_free(&image); }
+  Cleaner(const Cleaner&) = delete;
+  Cleaner& operator=(const Cleaner&) = delete;
+};
+
+constexpr std::uint64_t most_pixels = std::uint64_t{1} << 28;
+
+} // namespace
+
+void tone_map(Picture& picture, const PngOptions& options) {
+  const auto gain = static_cast<float>(std::exp2(options.exposure));
+  for (float& value : picture.rgb) {
+    const float exposed = std::clamp(value * gain, 0.0F, 1e6F);
+    value = std::min(options.tone_map == ToneMap::Filmic ? filmic(exposed) : exposed, 1.0F);
+  }
+}
+
+unsigned char srgb_code(float linear) {
+  static const std::array<float, 255> thresholds = make_thresholds();
+  if (!(linear > 0))
+    return 0;
+  const auto place = std::upper_bound(thresholds.begin(), thresholds.end(), linear);
+  return static_cast<unsigned char>(place - thresholds.begin());
+}
+
+float srgb_value(unsigned char code) { return static_cast<float>(linear_of(code)); }
+
+void write_png(const std::string& path, const Picture& picture, const PngOptions& options) {
+  OutputFile file(path);
+  png_image image = description(picture.width, picture.height);
+  Picture toned = picture;
+  tone_map(toned, options);
+  std::vector<unsigned char> codes(toned.rgb.size());
+  std::transform(toned.rgb.begin(), toned.rgb.end(), codes.begin(), srgb_code);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::vector<char> encoded(size);
+  if (png_image_write_to_memory(&image, encoded.data(), &size, 0, codes.data(), 0, nullptr) == 0)
+    throw_output_error(path, std::string("cannot be encoded as PNG: ") + image.message);
+  file.write(encoded.data(), size);
+  file.commit();
+}
+
+Picture read_png(const std::string& path) {
+  const InputFile file(path);
+  png_image image = description(0, 0);
+  const Cleaner cleaner(image);
+  if (png_image_begin_read_from_memory(&image, file.bytes().data(), file.bytes().size()) == 0)
+    throw_input_error(path, std::string("is no PNG image: ") + image.message);
+  if (std::uint64_t{image.width} * image.height > most_pixels)
+    throw_input_error(path, "has more than 2^28 pixels");
+  image.format = PNG_FORMAT_RGB;
+  const png_color black = {0, 0, 0};
+  std::vector<unsigned char> codes(PNG_IMAGE_SIZE(image));
+  if (png_image_finish_read(&image, &black, codes.data(), 0, nullptr) == 0 ||
+      PNG_IMAGE_FAILED(image))
+    throw_input_error(path, std::string("cannot be decoded: ") + image.message);
+  Picture picture(static_cast<int>(image.width), static_cast<int>(image.height));
+  std::transform(codes.begin(), codes.end(), picture.rgb.begin(), srgb_value);
+  return picture;
+}
+
+} // namespace haarlight::image

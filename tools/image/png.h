@@ -1,0 +1,35 @@
+#pragma once
+// PNG pictures of 8 bits a channel, sRGB.
+
+#include <image/image.h>
+
+#include <string>
+
+namespace haarlight::image {
+
+enum class ToneMap {
+  Clamp, ///< values above 1 become 1
+  Filmic ///< a smooth shoulder and toe (Narkowicz 2015, "ACES filmic tone mapping curve")
+};
+
+struct PngOptions {
+  double exposure = 0; ///< stops; values are multiplied by 2^exposure first
+  ToneMap tone_map = ToneMap::Clamp;
+};
+
+/// Applies exposure and tone map: linear values for display, from 0 to 1.
+void tone_map(Picture& picture, const PngOptions& options);
+
+/// The 8-bit sRGB code of a linear value; not-a-number and negative values give 0.
+unsigned char srgb_code(float linear);
+/// The linear value of a code; srgb_code() of it is the code again.
+float srgb_value(unsigned char code);
+
+/// Writes the picture whole or not at all; bytes depend on picture and options only.
+/// @throws Error(Output)
+void write_png(const std::string& path, const Picture& picture, const PngOptions& options = {});
+
+/// Any PNG, transparency over black. @throws Error(Input)
+Picture read_png(const std::string& path);
+
+} // namespace haarlight::image

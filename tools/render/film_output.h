@@ -1,0 +1,27 @@
+#pragma once
+// What haarrender says and writes of a rendering.
+
+#include <renderer/render.h>
+#include <support/report.h>
+
+#include <string>
+
+namespace haarlight::tool {
+
+/// Writes the film as EXR: R, G, B, the normal N.X N.Y N.Z, pdf_sum, variance, samples; the
+/// attribute haarlight:provenance names scene, sources (each with its hash) and options. @throws
+/// Error(Output)
+void write_film_exr(const std::string& path, const renderer::RenderResult& result,
+                    const renderer::SceneDescription& scene,
+                    const renderer::RenderOptions& options);
+
+/// Writes the tone-mapped picture, brightened by some stops. @throws Error(Output)
+void write_film_png(const std::string& path, const renderer::Film& film, double exposure);
+
+/// Size, cost and quality.
+Report describe(const renderer::RenderResult& result);
+
+/// Gives the scene a film of a size as in 640x480. @throws UsageError
+void set_film_size(const std::string& text, renderer::SceneDescription& scene);
+
+} // namespace haarlight::tool

@@ -1,0 +1,79 @@
+#include <support/inspect.h>
+
+#include <wavelet/parallel.h>
+
+#include <algorithm>
+
+namespace haarlight::tool {
+namespace {
+
+using wavelet::TreeSet;
+
+constexpr std::int64_t largest_default_side = 2048;
+
+struct Grid {
+  int columns;
+  int rows;
+};
+
+Grid grid_of(const TreeSet& set) {
+  const wavelet::SetInfo& info = set.info();
+  if (info.rows > 1)
+    return {info.columns, info.rows};
+  int columns = 1;
+  while (columns * columns < info.columns)
+    ++columns;
+  return {columns, (info.columns + columns - 1) / columns};
+}
+
+} // namespace
+
+image::Picture tree_picture(const wavelet::TreeView& tree, int level) {
+  wavelet::Map map = tree.reconstruct(level);
+  image::Picture picture;
+  picture.width = picture.height = map.size;
+  picture.rgb = std::move(map.rgb);
+  return picture;
+}
+
+std::int64_t atlas_side(const TreeSet& set, int level) {
+  const Grid grid = grid_of(set);
+  return std::int64_t{std::max(grid.columns, grid.rows)} << level;
+}
+
+int atlas_level(const TreeSet& set) {
+  int level = set.levels();
+  while (level > 0 && atlas_side(set, level) > largest_default_side)
+    --level;
+  return level;
+}
+
+image::Picture atlas(const TreeSet& set, int level) {
+  const Grid grid = grid_of(set);
+  const int side = 1 << level;
+  const std::vector<TreeIndex> trees = all_trees(set);
+  image::Picture picture(grid.columns * side, grid.rows * side);
+  parallel_for(trees.size(), [&](std::size_t i) {
+    const wavelet::Map map = set.tree(trees[i].column, trees[i].row).reconstruct(level);
+    const int left = static_cast<int>(i) % grid.columns * side;
+    const int top = static_cast<int>(i) / grid.columns * side;
+    for (int y = 0; y < side; ++y)
+      std::copy_n(map.rgb.data() + map.offset(0, y), 3 * static_cast<std::size_t>(side),
+                  picture.rgb.data() + picture.offset(left, top + y));
+  });
+  return picture;
+}
+
+void expose(image::Picture& picture) {
+  double sum = 0;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
+    sum += std::max(0.0,
+                    static_cast<double>(luminance(Eigen::Map<const Rgb>(picture.rgb.data() + i))));
+  if (sum <= 0)
+    return;
+  const auto gain = static_cast<float>(0.18 * static_cast<double>(picture.rgb.size() / 3) / sum);
+  for (float& value : picture.rgb)
+    value *= gain;
+}
+
+} // namespace haarlight::tool

@@ -1,0 +1,177 @@
+#include <support/map_output.h>
+
+#include <support/progress.h>
+#include <support/words.h>
+
+#include <image/map_set_exr.h>
+
+#include <wavelet/output_file.h>
+
+#include <array>
+#include <cmath>
+
+namespace haarlight::tool {
+namespace {
+
+using wavelet::CompressOptions;
+using wavelet::CompressReport;
+using wavelet::Conservation;
+using wavelet::Criterion;
+
+constexpr std::array<const char*, 5> compress_option_names = {
+    "--criterion", "--tolerance", "--keep", "--coefficients", "--luminance"};
+
+/// The options as given, checked against each other.
+CompressOptions checked_options(const MapOutput& output) {
+  CompressOptions options = output.compression;
+  const bool count = options.threshold.criterion == Criterion::Count;
+  if (count && !output.keep)
+    throw UsageError("--criterion count needs --keep");
+  if (output.tolerance && output.keep)
+    throw UsageError("--tolerance and --keep exclude each other");
+  if (output.tolerance)
+    options.threshold.tolerance = *output.tolerance;
+  if (output.keep)
+    options.threshold.keep = static_cast<std::size_t>(*output.keep);
+  return options;
+}
+
+void refuse_compress_options(const Tool& tool) {
+  for (const char* name : compress_option_names)
+    if (tool.given(name))
+      throw UsageError(std::string(name) + " is for .haar files, the output is an .exr");
+}
+
+void describe_set(const wavelet::SetInfo& info, Report& report) {
+  report.add("map_size", info.size, "px")
+      .add("columns", info.columns)
+      .add("rows", info.rows)
+      .add("maps", info.map_count());
+}
+
+void describe(const Conservation& conservation, double tolerance, Report& report) {
+  report.section("conservation")
+      .add("mean_error", conservation.mean_error)
+      .add("worst_error", conservation.largest_error)
+      .add("worst_column", conservation.worst_column)
+      .add("worst_row", conservation.worst_row)
+      .add("tolerance", tolerance);
+}
+
+double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
+void describe(const CompressReport& result, const CompressOptions& options, Report& report) {
+  const auto total = static_cast<double>(result.total_coefficients);
+  const auto kept = static_cast<double>(result.kept_coefficients);
+  Report& part = report.section("compression");
+  part.add("criterion", wavelet::criterion_name(options.threshold.criterion));
+  if (options.threshold.keep)
+    part.add("keep", *options.threshold.keep);
+  else
+    part.add("tolerance", options.threshold.tolerance);
+  part.add("coefficients", result.total_coefficients)
+      .add("kept_coefficients", result.kept_coefficients)
+      .add("kept_share", share(kept, total))
+      .add("nodes", result.nodes)
+      .add("relative_l2_error", result.relative_l2_error())
+      .add("relative_linf_error", result.relative_linf_error())
+      .add("negative_mass_share", share(result.negative_mass, result.mass));
+}
+
+/// Does what both kinds of output have in common once all is written but not yet in place.
+int finish(const Tool& tool, const MapOutput& output, std::optional<Conservation> conservation,
+           const std::function<void()>& commit, std::uint64_t bytes, Report& report) {
+  bool within = true;
+  if (conservation) {
+    describe(*conservation, output.conservation_tolerance, report);
+    within = std::abs(conservation->mean_error) <= output.conservation_tolerance;
+  }
+  if (!within) {
+    tool.print(report);
+    tool.note(output.path + ": not written: the maps miss the source's integrals by " +
+              short_text(conservation->mean_error) + ", more than the tolerance of " +
+              short_text(output.conservation_tolerance));
+    return exit_no;
+  }
+  commit();
+  report.add("bytes", bytes).add("output", output.path);
+  tool.print(report);
+  return exit_ok;
+}
+
+int write_exr_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
+                  Report& report) {
+  refuse_compress_options(tool);
+  OutputFile file(output.path);
+  image::MapSetResult result;
+  {
+    ProgressBar bar(tool, "making maps");
+    result = image::write_map_set_exr(source, file, bar.callback());
+  }
+  const auto commit = [&] { image::commit_exr(file); };
+  return finish(tool, output, result.conservation, commit, result.bytes, report);
+}
+
+int write_haar_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
+                   Report& report) {
+  const CompressOptions options = checked_options(output);
+  OutputFile file(output.path);
+  CompressReport result;
+  {
+    ProgressBar bar(tool, "compressing maps");
+    result = wavelet::compress_set(source, options, file, bar.callback());
+  }
+  describe(result, options, report);
+  const auto commit = [&] { file.commit(); };
+  return finish(tool, output, result.conservation, commit, result.bytes, report);
+}
+
+} // namespace
+
+bool has_extension(const std::string& path, const std::string& extension) {
+  return path.size() > extension.size() && path.ends_with(extension);
+}
+
+void add_compress_options(Tool& tool, MapOutput& output) {
+  CompressOptions& options = output.compression;
+  tool.choice(options.threshold.criterion, "--criterion",
+              {{"variance", Criterion::Variance},
+               {"l2", Criterion::L2},
+               {"linf", Criterion::Linf},
+               {"count", Criterion::Count}},
+              "What ranks the coefficients: their share in a sampler's variance, the L2 error, the "
+              "largest error, or as many as --keep says");
+  tool.value(output.tolerance, "--tolerance",
+             "Bound of the criterion, relative; 0 keeps everything [" +
+                 short_text(options.threshold.tolerance) + "]",
+             0, 1e9);
+  tool.value(output.keep, "--keep", "Coefficients to keep per map, in place of --tolerance", 0,
+             1 << 30);
+  tool.choice(
+      options.coefficients, "--coefficients",
+      {{"half", wavelet::CoefficientType::Half}, {"float", wavelet::CoefficientType::Float}},
+      "Precision of stored coefficients: 16 or 32 bits");
+  tool.flag(options.luminance, "--luminance", "Store the luminance in place of RGB");
+}
+
+void add_map_output(Tool& tool, MapOutput& output) {
+  tool.output(output.path, "OUT.exr|OUT.haar",
+              "Map set to write: one tiled EXR, or compressed to a .haar file");
+  add_compress_options(tool, output);
+  tool.value(output.conservation_tolerance, "--conservation-tolerance",
+             "Largest relative error of the set's total integral; past it the exit code is 1", 0,
+             1e9);
+  tool.offer_json();
+}
+
+int write_map_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
+                  Report report) {
+  describe_set(source.info(), report);
+  if (has_extension(output.path, ".haar"))
+    return write_haar_set(tool, source, output, report);
+  if (has_extension(output.path, ".exr"))
+    return write_exr_set(tool, source, output, report);
+  throw UsageError("--output: '" + output.path + "' ends in neither .exr nor .haar");
+}
+
+} // namespace haarlight::tool

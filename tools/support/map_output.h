@@ -1,0 +1,42 @@
+#pragma once
+// What every program that makes maps does with them: one tiled EXR, or a compressed .haar file.
+
+#include <support/tool.h>
+
+#include <wavelet/compress.h>
+#include <wavelet/map_set.h>
+
+#include <optional>
+#include <string>
+
+namespace haarlight::tool {
+
+/// Where maps go. Declare one, pass it to add_map_output() before and to write_map_set() inside
+/// Tool::run().
+struct MapOutput {
+  std::string path; ///< *.exr or *.haar
+  wavelet::CompressOptions compression;
+  std::optional<double> tolerance;      ///< of thresholding, if given on the command line
+  std::optional<int> keep;              ///< likewise
+  double conservation_tolerance = 0.01; ///< largest relative error of the set's total luminance
+};
+
+/// Declares --criterion, --tolerance, --keep, --coefficients and --luminance.
+void add_compress_options(Tool& tool, MapOutput& output);
+
+/// Declares -o, the compression options, --conservation-tolerance and --json.
+void add_map_output(Tool& tool, MapOutput& output);
+
+/// Makes and writes all maps and prints one report, whose first lines are those of `report`. Both
+/// ways to a .haar file, direct or by an EXR, give the same bytes.
+/// @return exit_ok, or exit_no (and no file) if the maps miss the source's integrals by more than
+///         the tolerance
+/// @throws UsageError for an unknown extension or contradicting options, and whatever source and
+///         file throw
+int write_map_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
+                  Report report = {});
+
+/// True if the path ends so, as in ".haar".
+bool has_extension(const std::string& path, const std::string& extension);
+
+} // namespace haarlight::tool

@@ -1,0 +1,187 @@
+#include <support/tool.h>
+
+#include <support/words.h>
+
+#include <wavelet/error.h>
+#include <wavelet/parallel.h>
+#include <wavelet/provenance.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+namespace haarlight::tool {
+
+struct Tool::Parser {
+  CLI::App app;
+};
+
+namespace {
+
+/// Diagnostics are one line, whatever characters a file name has.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return text;
+}
+
+void say(const std::string& line) {
+  const std::string text = line + '\n';
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+std::string version_line(const std::string& name) {
+  std::string version = version_text(); // "haarlight 0.1.0"
+  return name + " (" + version.insert(version.find(' '), ")");
+}
+
+/// A path that is needed: CLI11 itself would let an empty one pass.
+void set_path(std::string& path, const std::string& word) {
+  if (word.empty())
+    throw CLI::ValidationError("a path is empty");
+  path = word;
+}
+
+} // namespace
+
+Tool::Tool(std::string name, const std::string& description)
+    : m_name(std::move(name)), m_parser(std::make_unique<Parser>()) {
+  m_parser->app.name(m_name);
+  m_parser->app.description(m_name + ": " + description);
+  m_parser->app.set_help_flag("-h,--help", "Print this help and exit");
+  m_parser->app.set_version_flag("--version", version_line(m_name), "Print the version and exit");
+  flag(m_quiet, "-q,--quiet", "No notes and no progress on stderr");
+  flag(m_verbose, "-v,--verbose", "More notes on stderr");
+  value(m_threads, "--threads", "Threads to use; 0 = as many as the machine offers", 0, 4096);
+}
+
+Tool::~Tool() = default;
+
+void Tool::input(std::string& path, const std::string& placeholder, const std::string& help) {
+  m_parser->app
+      .add_option_function<std::string>(
+          placeholder, [&path](const std::string& word) { set_path(path, word); }, help)
+      ->type_name("")
+      ->required();
+}
+
+void Tool::inputs(std::vector<std::string>& paths, const std::string& placeholder,
+                  const std::string& help) {
+  m_parser->app.add_option(placeholder, paths, help)->type_name("")->required();
+}
+
+void Tool::output(std::string& path, const std::string& placeholder, const std::string& help) {
+  add_option("-o,--output", placeholder, "", help,
+             [&path](const std::string& word) { set_path(path, word); });
+  require("--output");
+}
+
+void Tool::texts(std::vector<std::string>& texts, const std::string& names,
+                 const std::string& placeholder, const std::string& help) {
+  m_parser->app.add_option(names, texts, help)->type_name(placeholder)->expected(1)->take_all();
+}
+
+void Tool::flag(bool& flag, const std::string& names, const std::string& help) {
+  m_parser->app.add_flag(names, flag, help);
+}
+
+void Tool::add_option(const std::string& names, const std::string& placeholder,
+                      const std::string& shown_default, const std::string& help, Setter setter) {
+  const auto checked = [setter = std::move(setter), names](const std::string& word) {
+    try {
+      setter(word);
+    } catch (const UsageError& error) {
+      throw CLI::ValidationError(names.substr(names.find("--")), error.what());
+    }
+  };
+  const std::string shown = shown_default.empty() ? help : help + " [" + shown_default + "]";
+  m_parser->app.add_option_function<std::string>(names, checked, shown)->type_name(placeholder);
+}
+
+void Tool::add_choice(const std::string& names, const std::vector<std::string>& words,
+                      const std::string& chosen, const std::string& help,
+                      const std::function<void(std::size_t)>& setter) {
+  std::string list;
+  for (const std::string& word : words)
+    list.append(list.empty() ? "" : "|").append(word);
+  add_option(names, list, chosen, help, [words, list, setter](const std::string& word) {
+    const auto place = std::find(words.begin(), words.end(), word);
+    if (place == words.end())
+      throw UsageError("'" + word + "' is none of " + list);
+    setter(static_cast<std::size_t>(place - words.begin()));
+  });
+}
+
+void Tool::require(const std::string& name) { m_parser->app.get_option(name)->required(); }
+
+void Tool::offer_json() { flag(m_json, "--json", "Print results as one JSON object"); }
+
+bool Tool::given(const std::string& name) const { return m_parser->app.count(name) > 0; }
+
+/// Nothing if the command line is right, else the exit code.
+std::optional<int> Tool::parse(int argc, const char* const* argv) {
+  CLI::App& app = m_parser->app;
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::CallForHelp&) {
+    return guarded([&] { return print(app.help()), exit_ok; });
+  } catch (const CLI::CallForVersion&) {
+    return guarded([&] { return print(version_line(m_name) + '\n'), exit_ok; });
+  } catch (const CLI::ParseError& error) {
+    return complain(exit_usage, std::string(error.what()) + " (see " + m_name + " --help)");
+  }
+}
+
+int Tool::run(int argc, const char* const* argv, const std::function<int()>& body) {
+  std::signal(SIGPIPE, SIG_IGN); // a closed pipe is an output error like any other
+  std::signal(SIGXFSZ, SIG_IGN); // and so is a file size limit
+  if (const auto code = parse(argc, argv))
+    return *code;
+  const ThreadLimit limit(m_threads);
+  return guarded(body);
+}
+
+int Tool::guarded(const std::function<int()>& body) const {
+  try {
+    return body();
+  } catch (const UsageError& error) {
+    return complain(exit_usage, std::string(error.what()) + " (see " + m_name + " --help)");
+  } catch (const Error& error) {
+    return complain(error.kind() == ErrorKind::Input ? exit_input : exit_output, error.what());
+  } catch (const std::bad_alloc&) {
+    return complain(exit_internal, "out of memory");
+  } catch (const std::exception& error) {
+    return complain(exit_internal, error.what());
+  }
+}
+
+int Tool::complain(int code, const std::string& message) const {
+  say(m_name + ": " + one_line(message));
+  return code;
+}
+
+void Tool::note(const std::string& line) const {
+  if (!m_quiet)
+    say(m_name + ": " + one_line(line));
+}
+
+void Tool::detail(const std::string& line) const {
+  if (m_verbose)
+    note(line);
+}
+
+void Tool::print(const Report& report) const { print(m_json ? report.json() : report.text()); }
+
+void Tool::print(const std::string& text) const {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0)
+    throw_output_error("standard output",
+                       std::string("cannot be written: ") + std::strerror(errno));
+}
+
+} // namespace haarlight::tool

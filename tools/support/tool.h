@@ -1,0 +1,140 @@
+#pragma once
+// The frame of every command-line program: options, --help, --version, -q, -v, --threads, --json,
+// exit codes and the one line on stderr. Usage:
+//
+//   tool::Tool app("brdf2maps", "Resamples a measured BRDF into a set of maps.");
+//   app.input(in, "IN.binary", "MERL file");
+//   app.output(out, "OUT.exr", "map set to write");
+//   app.value(size, "--size", "pixels along a map's side", 1, 4096);
+//   return app.run(argc, argv, [&] { …; return tool::exit_ok; });
+//
+// An option's value at declaration is its default, shown by --help. Help texts name the unit.
+
+#include <support/report.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace haarlight::tool {
+
+inline constexpr int exit_ok = 0;
+inline constexpr int exit_no = 1;       ///< a comparison or validation says no
+inline constexpr int exit_usage = 2;    ///< the command line is wrong
+inline constexpr int exit_input = 3;    ///< input unreadable or malformed
+inline constexpr int exit_output = 4;   ///< output could not be written
+inline constexpr int exit_internal = 5; ///< a fault of the program, or memory ran out
+
+/// Thrown by a body when options contradict each other; exit code 2.
+class UsageError : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+class Tool {
+public:
+  Tool(std::string name, const std::string& description);
+  ~Tool();
+  Tool(const Tool&) = delete;
+  Tool& operator=(const Tool&) = delete;
+
+  /// A required positional argument: a path.
+  void input(std::string& path, const std::string& placeholder, const std::string& help);
+  /// One or more positional paths.
+  void inputs(std::vector<std::string>& paths, const std::string& placeholder,
+              const std::string& help);
+  /// The required option -o, --output.
+  void output(std::string& path, const std::string& placeholder, const std::string& help);
+
+  /// `names` is as in "-s,--size". Numbers outside [low, high], and anything that is no number, are
+  /// usage errors.
+  void value(int& number, const std::string& names, const std::string& help, int low, int high);
+  void value(std::uint64_t& number, const std::string& names, const std::string& help);
+  void value(double& number, const std::string& names, const std::string& help, double low,
+             double high);
+  void value(float& number, const std::string& names, const std::string& help, double low,
+             double high);
+  /// The same without a default.
+  void value(std::optional<int>& number, const std::string& names, const std::string& help, int low,
+             int high);
+  void value(std::optional<double>& number, const std::string& names, const std::string& help,
+             double low, double high);
+  /// `count` numbers separated by commas, as in 0.9,0.6,0.2; `numbers` holds the default, or
+  /// nothing.
+  void values(std::vector<double>& numbers, const std::string& names, const std::string& help,
+              std::size_t count, double low, double high);
+  /// Any text, for example a further path; `placeholder` is what --help shows for it.
+  void text(std::string& text, const std::string& names, const std::string& placeholder,
+            const std::string& help);
+  /// Any text, given any number of times.
+  void texts(std::vector<std::string>& texts, const std::string& names,
+             const std::string& placeholder, const std::string& help);
+  void flag(bool& flag, const std::string& names, const std::string& help);
+
+  /// One of a few names, each standing for a value.
+  template <class E>
+  void choice(E& value, const std::string& names,
+              const std::vector<std::pair<std::string, E>>& choices, const std::string& help) {
+    std::vector<std::string> words;
+    std::string chosen;
+    for (const auto& [word, meaning] : choices) {
+      words.push_back(word);
+      if (meaning == value)
+        chosen = word;
+    }
+    add_choice(names, words, chosen, help,
+               [&value, choices](std::size_t index) { value = choices[index].second; });
+  }
+  /// The option must be given.
+  void require(const std::string& name);
+  /// Adds --json: results as one JSON object instead of aligned text.
+  void offer_json();
+
+  /// Parses the command line and calls `body`, which returns an exit code. Errors it throws become
+  /// exit codes and one line on stderr. Call once.
+  int run(int argc, const char* const* argv, const std::function<int()>& body);
+
+  // What a body may ask and say.
+  bool
+  given(const std::string& name) const; ///< the option, as in "--size", was on the command line
+  bool quiet() const { return m_quiet; }
+  bool verbose() const { return m_verbose; }
+  bool json() const { return m_json; }
+  const std::string& name() const { return m_name; }
+
+  /// A diagnostic line on stderr, unless --quiet.
+  void note(const std::string& line) const;
+  /// A diagnostic line on stderr with --verbose only.
+  void detail(const std::string& line) const;
+  /// A result on stdout, as text or with --json as an object. @throws Error(Output)
+  void print(const Report& report) const;
+  /// Raw text on stdout. @throws Error(Output), for example for a closed pipe
+  void print(const std::string& text) const;
+
+private:
+  struct Parser;
+  using Setter = std::function<void(const std::string& word)>;
+
+  void add_option(const std::string& names, const std::string& placeholder,
+                  const std::string& shown_default, const std::string& help, Setter setter);
+  void add_choice(const std::string& names, const std::vector<std::string>& words,
+                  const std::string& chosen, const std::string& help,
+                  const std::function<void(std::size_t)>& setter);
+  std::optional<int> parse(int argc, const char* const* argv);
+  int guarded(const std::function<int()>& body) const;
+  int complain(int code, const std::string& message) const;
+
+  std::string m_name;
+  std::unique_ptr<Parser> m_parser;
+  bool m_quiet = false;
+  bool m_verbose = false;
+  bool m_json = false;
+  int m_threads = 0;
+};
+
+} // namespace haarlight::tool
