@@ -69,8 +69,7 @@ int main(int argc, char** argv) {
     const brdf::BrdfMapOptions map_settings = map_options(options);
     brdf::MeasuredBrdf table(options.input, options.lookup);
     tool::Report report;
-    report.add("source", table.name())
-        .add("bilateral_asymmetry", brdf::bilateral_asymmetry(table));
+    report.add("source", table.name()).add("bilateral_asymmetry", brdf::bilateral_asymmetry(table));
     const brdf::BrdfMaps maps(std::move(table), map_settings);
     return tool::write_map_set(app, maps, options.output, report);
   });

@@ -60,7 +60,8 @@ void set_number(double* parameter, const std::optional<double>& given, const cha
     *parameter = *given;
 }
 
-template <class M> brdf::AnalyticBrdf configured(M model, const Options& o) {
+template <class M>
+brdf::AnalyticBrdf configured(M model, const Options& o) {
   set_colour(model.diffuse, o.diffuse);
   set_colour(model.specular, o.specular);
   double* roughness = nullptr;
@@ -105,8 +106,8 @@ tool::Report describe(const brdf::MerlTable& table, const std::string& path) {
   const brdf::MeasuredBrdf lookup(table);
   std::vector<double> albedo;
   for (const double degrees : {0, 30, 60})
-    albedo.push_back(static_cast<double>(luminance(
-        brdf::directional_albedo(lookup, degrees * pi / 180, degrees * pi / 180))));
+    albedo.push_back(static_cast<double>(
+        luminance(brdf::directional_albedo(lookup, degrees * pi / 180, degrees * pi / 180))));
   tool::Report report;
   report.add("cells", table.plane_size())
       .add("invalid_cells", invalid)

@@ -1,7 +1,7 @@
 // haarinfo: what a .haar file holds.
 #include <support/inspect.h>
-#include <support/map_output.h>
 #include <support/tool.h>
+#include <support/words.h>
 
 #include <image/image_exr.h>
 #include <image/png.h>

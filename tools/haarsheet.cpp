@@ -1,5 +1,4 @@
 // haarsheet: pictures side by side, compared with a reference.
-#include <support/map_output.h>
 #include <support/tool.h>
 #include <support/words.h>
 

@@ -1,6 +1,7 @@
 // maps2haar: a map set to sparse Haar trees.
 #include <support/map_output.h>
 #include <support/tool.h>
+#include <support/words.h>
 
 #include <image/map_set_exr.h>
 

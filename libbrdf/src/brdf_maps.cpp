@@ -48,7 +48,8 @@ Map quarter_turn(const Map& map) {
 }
 
 const char* const frame_convention =
-    "z = mirror direction of omega_o about the normal n; n = (sin theta_r cos phi, sin theta_r sin phi, "
+    "z = mirror direction of omega_o about the normal n; n = (sin theta_r cos phi, sin theta_r sin "
+    "phi, "
     "cos theta_r); column c covers theta_r in [c, c+1) * (pi/2) / columns; row r covers phi in "
     "[r, r+1) * 2 pi / rolls, or is phi = 0 if there is one roll";
 
@@ -118,8 +119,7 @@ std::optional<Rgb> BrdfMaps::integral(int column, int /*row*/) const {
   Albedo& albedo = m_albedos[static_cast<std::size_t>(column)];
   std::call_once(albedo.once, [&] {
     const double step = std::numbers::pi / 2 / m_options.theta;
-    albedo.value =
-        directional_albedo(m_brdf, column * step, (column + 1) * step, m_options.cosine);
+    albedo.value = directional_albedo(m_brdf, column * step, (column + 1) * step, m_options.cosine);
   });
   return albedo.value;
 }

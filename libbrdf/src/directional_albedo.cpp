@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace haarlight::brdf {
 namespace {
 
-constexpr int steps_per_bin = 10; // of θ_h
-constexpr int ring_size = 128;    // half vectors of one θ_h
-constexpr int outgoing_steps = 4;
+constexpr int steps_per_bin = 6;                             // of θ_h
+constexpr int ring_size = 128;                               // half vectors of one θ_h
+constexpr double widest_step = 0.4 * std::numbers::pi / 180; // of θ_o
 
 struct Ring {
   float cosine[ring_size];
@@ -29,8 +30,9 @@ Ring azimuth_ring() {
 
 /// The mirror images of ω_o in the plane y = 0 about one batch of half vectors at angle θ_h.
 /// @return h·ω_o of each
-std::array<float, batch_capacity> mirror_about_ring(const Ring& ring, int begin, const SineCosine& h,
-                                                    const SineCosine& o, DirectionBatch& batch) {
+std::array<float, batch_capacity> mirror_about_ring(const Ring& ring, int begin,
+                                                    const SineCosine& h, const SineCosine& o,
+                                                    DirectionBatch& batch) {
   const auto h_sine = static_cast<float>(h.sine);
   const auto h_cosine = static_cast<float>(h.cosine);
   const auto o_sine = static_cast<float>(o.sine);
@@ -85,8 +87,10 @@ Eigen::Array3d albedo_at(const MeasuredBrdf& brdf, double theta_o, bool cosine) 
 
 } // namespace
 
-Rgb directional_albedo(const MeasuredBrdf& brdf, double theta_begin, double theta_end, bool cosine) {
-  const int steps = theta_begin < theta_end ? outgoing_steps : 1;
+Rgb directional_albedo(const MeasuredBrdf& brdf, double theta_begin, double theta_end,
+                       bool cosine) {
+  const int steps =
+      std::max(1, static_cast<int>(std::ceil((theta_end - theta_begin) / widest_step)));
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   for (int i = 0; i < steps; ++i)
     sum += albedo_at(brdf, theta_begin + (theta_end - theta_begin) * (i + 0.5) / steps, cosine);

@@ -1,6 +1,6 @@
 #pragma once
-// Elementary functions in double that round alike on every CPU (the C library picks its code by CPU),
-// and the angles of a MERL table's bin centres. Relative errors stay below 1e-14.
+// Elementary functions in double that round alike on every CPU (the C library picks its code by
+// CPU), and the angles of a MERL table's bin centres. Relative errors stay below 1e-14.
 
 #include <brdf/merl_file.h>
 
@@ -16,8 +16,8 @@ struct SineCosine {
 
 /// Of an angle in [−8, 8].
 inline SineCosine sine_cosine(double angle) {
-  constexpr double quarter_high = 1.5707963267341256;    // π/2 to 33 bits
-  constexpr double quarter_low = 6.077100506506192e-11;  // and the rest
+  constexpr double quarter_high = 1.5707963267341256;   // π/2 to 33 bits
+  constexpr double quarter_low = 6.077100506506192e-11; // and the rest
   const int turns = static_cast<int>(angle / quarter_high + (angle < 0 ? -0.5 : 0.5));
   const double x = (angle - turns * quarter_high) - turns * quarter_low;
   double sine = 1;

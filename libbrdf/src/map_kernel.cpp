@@ -9,7 +9,7 @@
 namespace haarlight::brdf {
 namespace {
 
-constexpr int tile_size = 8;                  // pixels
+constexpr int tile_size = 8; // pixels
 constexpr int squares_per_batch = batch_capacity / 4;
 constexpr float smallest_side = 1.0F / (1 << 18);
 /// Width of a square of the domain, radians, over its side: the root of 4π.
@@ -103,7 +103,8 @@ void MapKernel::take_samples(Job& job) const {
       b.v[i] = s.v + s.side * ((quarter & 2) != 0 ? 0.75F : 0.25F);
       b.spacing[i] = 0.5F * width_per_side * s.side;
       const float offset = 0.25F * (orders[s.order][quarter] + s.offset);
-      const auto place = static_cast<std::size_t>(offset * normal_count);
+      // Far down the tree the offset may round to one.
+      const int place = std::min(static_cast<int>(offset * normal_count), normal_count - 1);
       for (int axis = 0; axis < 3; ++axis)
         b.normal[axis][i] = m_normals[axis][place];
     }
@@ -119,12 +120,14 @@ void MapKernel::settle_samples(Job& job) const {
   int settled = 0;
   for (int i = 0; i < b.count; ++i) {
     const Square& s = job.taken[i / 4];
-    if (b.cosine[i] < -radius_per_width * b.spacing[i])
+    // The samples that would replace this one have other normals.
+    if (b.cosine[i] < -(radius_per_width * b.spacing[i] + 2 * m_cell_radius))
       continue;
     if (b.spacing[i] > widest * 1.001F || (b.resolution[i] > 1 && s.side > smallest_side)) {
       split(job, s, i);
     } else if (b.cosine[i] > 0) {
-      b.angles.move(i, settled);
+      if (i != settled)
+        b.angles.move(i, settled);
       factors[settled] = s.weight * (m_cosine ? b.cosine[i] : 1.0F);
       pixels[settled++] = s.pixel;
     }
@@ -132,8 +135,13 @@ void MapKernel::settle_samples(Job& job) const {
   b.angles.count = settled;
   Float4 values[batch_capacity];
   m_brdf.evaluate(b.angles, values);
-  for (int i = 0; i < settled; ++i)
-    job.sums[pixels[i]] += values[i] * factors[i];
+  for (int i = 0; i < settled;) {
+    const std::uint32_t pixel = pixels[i];
+    Float4 sum = job.sums[pixel];
+    for (; i < settled && pixels[i] == pixel; ++i)
+      sum += values[i] * factors[i];
+    job.sums[pixel] = sum;
+  }
 }
 
 /// Queues the square that sample i of the batch, one of `parent`, stands for.
@@ -146,6 +154,7 @@ void MapKernel::split(Job& job, const Square& parent, int i) {
 
 wavelet::Map MapKernel::make(int size) const {
   Job job(size);
+  Eigen::Map<Vec3>(job.batch.middle_wo) = mirror(Vec3::UnitZ(), m_middle);
   const float side = 1.0F / static_cast<float>(size);
   for (int y = 0; y < size; y += tile_size) {
     for (int x = 0; x < size; x += tile_size) {

@@ -19,10 +19,10 @@ struct ReflectionCell {
 };
 
 /// Averages f_r over a map's pixels. A square of the domain takes 2 × 2 samples; a sample that is
-/// wider than the table's bins allow there is replaced by those of its quarter, and so on. Every sample
-/// has its own normal from the cell: quarters of the cell's range of θ_r go to the four samples of a
-/// square, sixteenths to those of four squares (a radical inverse of the path down the tree), and φ
-/// follows θ_r as in a Hammersley set.
+/// wider than the table's bins allow there is replaced by those of its quarter, and so on. Every
+/// sample has its own normal from the cell: quarters of the cell's range of θ_r go to the four
+/// samples of a square, sixteenths to those of four squares (a radical inverse of the path down the
+/// tree), and φ follows θ_r as in a Hammersley set.
 class MapKernel {
 public:
   /// @param supersample samples along a pixel's side at least

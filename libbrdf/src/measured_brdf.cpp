@@ -33,9 +33,9 @@ void MeasuredBrdf::fill(const MerlTable& table) {
       const double g = table.value(1, source);
       const double b = table.value(2, source);
       if (r >= 0 && g >= 0 && b >= 0)
-        target[i].value = Float4{static_cast<float>(r * merl_scale[0]),
-                                 static_cast<float>(g * merl_scale[1]),
-                                 static_cast<float>(b * merl_scale[2]), 1.0F};
+        target[i].value =
+            Float4{static_cast<float>(r * merl_scale[0]), static_cast<float>(g * merl_scale[1]),
+                   static_cast<float>(b * merl_scale[2]), 1.0F};
     }
   }
 }
@@ -173,7 +173,8 @@ MeasuredBrdf MeasuredBrdf::symmetrised() const {
     for (int i = 0; i < m_phi_d_bins; ++i) {
       const int mirrored = (half_turn - 1 - i + m_phi_d_bins) % m_phi_d_bins;
       const Float4 sum = cell(0, row, i) + cell(0, row, mirrored);
-      result.m_cells[static_cast<std::size_t>(index(0, row, i + 1))].value = sum[3] > 0 ? sum / sum[3] : Float4{};
+      result.m_cells[static_cast<std::size_t>(index(0, row, i + 1))].value =
+          sum[3] > 0 ? sum / sum[3] : Float4{};
     }
   }
   result.pad_rows();

@@ -15,7 +15,8 @@
 namespace haarlight::brdf {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "MERL files are read as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "MERL files are read as they lie in memory");
 
 constexpr std::size_t header_size = 12;
 constexpr double largest_value = 1e30;
@@ -29,14 +30,16 @@ struct Dimensions {
 Dimensions read_dimensions(const InputFile& file) {
   const auto bytes = file.bytes();
   if (bytes.size() < header_size)
-    throw_input_error(file.path(), "file ends inside the 12-byte header of a MERL file", bytes.size());
+    throw_input_error(file.path(), "file ends inside the 12-byte header of a MERL file",
+                      bytes.size());
   Dimensions dims{};
   std::memcpy(&dims, bytes.data(), header_size);
   return dims;
 }
 
 /// Appends `name is N, must be M` if a dimension is not what it must be.
-void complain(std::string& text, bool good, const char* name, std::int32_t found, const char* right) {
+void complain(std::string& text, bool good, const char* name, std::int32_t found,
+              const char* right) {
   if (!good)
     text += std::string(text.empty() ? "" : ", ") + name + " is " + std::to_string(found) +
             ", must be " + right;
@@ -53,8 +56,8 @@ void check_dimensions(const InputFile& file, const Dimensions& dims) {
 }
 
 void check_size(const InputFile& file, const Dimensions& dims) {
-  const std::uint64_t cells = std::uint64_t{merl_theta_h_bins} * merl_theta_d_bins *
-                              static_cast<std::uint64_t>(dims.phi_d);
+  const std::uint64_t cells =
+      std::uint64_t{merl_theta_h_bins} * merl_theta_d_bins * static_cast<std::uint64_t>(dims.phi_d);
   const std::uint64_t wanted = header_size + 3 * sizeof(double) * cells;
   const std::uint64_t found = file.bytes().size();
   if (found != wanted)

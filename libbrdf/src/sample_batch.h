@@ -9,6 +9,7 @@ namespace haarlight::brdf {
 
 /// Samples of one map; place_samples() fills the second half from the first.
 struct SampleBatch {
+  float middle_wo[3] = {0, 0, 1}; ///< ω_o for the middle normal of the cell
   int count = 0;
   float u[batch_capacity], v[batch_capacity]; ///< square coordinates of ω
   float spacing[batch_capacity];              ///< width of what a sample stands for, radians

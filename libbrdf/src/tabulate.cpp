@@ -11,8 +11,8 @@ namespace {
 
 constexpr double lowest_model_cosine = 0.01;
 
-/// Cosines of ω_i and ω_o at one cell centre: in the half-vector frame ω_i is the difference vector d
-/// and ω_o its mirror image, and the normal is (−sin θ_h, 0, cos θ_h).
+/// Cosines of ω_i and ω_o at one cell centre: in the half-vector frame ω_i is the difference vector
+/// d and ω_o its mirror image, and the normal is (−sin θ_h, 0, cos θ_h).
 Angles cell_angles(const SineCosine& h, const SineCosine& d, const SineCosine& phi) {
   const double along = h.cosine * d.cosine;
   const double across = h.sine * d.sine * phi.cosine;
@@ -53,9 +53,8 @@ void fill_cell(MerlTable& table, std::size_t cell, const AnalyticBrdf& model, An
   const Rgb value = valid ? evaluate(model, angles) : Rgb::Zero();
   for (int c = 0; c < 3; ++c) {
     const std::size_t place = static_cast<std::size_t>(c) * table.plane_size() + cell;
-    table.raw[place] = valid ? static_cast<double>(value[c]) / merl_scale[c] *
-                                   noise_factor(options, place)
-                             : -1;
+    table.raw[place] =
+        valid ? static_cast<double>(value[c]) / merl_scale[c] * noise_factor(options, place) : -1;
   }
 }
 

@@ -1,5 +1,6 @@
 #include <probe/light_distribution.h>
 
+#include "mapping_lanes.h"
 #include "pixel_shape.h"
 
 #include <wavelet/error.h>
@@ -27,23 +28,26 @@ double pixel_luminance(const Probe& probe, int x, int y) {
 
 LightDistribution::LightDistribution(const Probe& probe)
     : m_mapping(probe.mapping()), m_width(probe.width()), m_height(probe.height()),
-      m_guides(std::max(1, probe.width() / 4)), m_rows(static_cast<std::size_t>(m_height) + 1),
+      m_rows(static_cast<std::size_t>(m_height) + 1),
+      m_row_guide(static_cast<std::size_t>(m_height)),
       m_columns(static_cast<std::size_t>(m_height) * static_cast<std::size_t>(m_width + 1)),
-      m_guide(static_cast<std::size_t>(m_height) * static_cast<std::size_t>(m_guides + 1)) {
+      m_column_guide(static_cast<std::size_t>(m_height) * static_cast<std::size_t>(m_width)) {
+  const auto width = static_cast<std::size_t>(m_width);
   std::vector<double> rows(static_cast<std::size_t>(m_height));
   parallel_for(rows.size(), [&](std::size_t y) {
-    std::vector<double> weights(static_cast<std::size_t>(m_width));
+    std::vector<double> weights(width);
     for (int x = 0; x < m_width; ++x)
       weights[static_cast<std::size_t>(x)] = pixel_luminance(probe, x, static_cast<int>(y)) *
                                              probe.pixel_solid_angle(x, static_cast<int>(y));
-    std::uint32_t* cdf = m_columns.data() + y * static_cast<std::size_t>(m_width + 1);
+    std::uint32_t* cdf = m_columns.data() + y * (width + 1);
     accumulate(weights, cdf);
-    make_guide(cdf, m_guide.data() + y * static_cast<std::size_t>(m_guides + 1));
+    make_guide(cdf, m_width, m_column_guide.data() + y * width);
     rows[y] = std::accumulate(weights.begin(), weights.end(), 0.0);
   });
   if (std::accumulate(rows.begin(), rows.end(), 0.0) <= 0)
     throw_input_error(probe.path(), "is black, a probe must shine somewhere");
   accumulate(rows, m_rows.data());
+  make_guide(m_rows.data(), m_height, m_row_guide.data());
 }
 
 /// Every positive weight gets one unit at least, a weight of 0 none.
@@ -63,90 +67,97 @@ void LightDistribution::accumulate(const std::vector<double>& weights, std::uint
   }
 }
 
-void LightDistribution::make_guide(const std::uint32_t* cdf, std::uint32_t* guide) const {
-  const std::uint32_t* at = cdf;
-  for (int k = 0; k < m_guides; ++k) {
-    const auto from = static_cast<std::uint32_t>(
-        std::uint64_t{one} * static_cast<std::uint64_t>(k) / static_cast<std::uint64_t>(m_guides));
-    at = std::upper_bound(at, cdf + m_width + 1, from);
-    at = at == cdf ? at : at - 1;
-    guide[k] = static_cast<std::uint32_t>(at - cdf);
+/// The first of `count` equal parts of the whole begin in these steps of the cdf.
+void LightDistribution::make_guide(const std::uint32_t* cdf, int count, std::uint32_t* guide) {
+  std::uint32_t step = 0;
+  for (int k = 0; k < count; ++k) {
+    const auto from = static_cast<std::uint64_t>(one) * static_cast<std::uint64_t>(k) /
+                      static_cast<std::uint64_t>(count);
+    while (cdf[step + 1] <= from)
+      ++step;
+    guide[k] = step;
   }
-  guide[m_guides] = static_cast<std::uint32_t>(m_width);
 }
 
-/// The step of the cdf that u falls in, sought where begin ≤ it < end.
-LightDistribution::Step LightDistribution::find(const std::uint32_t* begin,
-                                                const std::uint32_t* end, const std::uint32_t* cdf,
-                                                double u) {
-  const double place = u * one;
-  const auto whole = std::min(static_cast<std::uint32_t>(place), one - 1);
-  const std::uint32_t* step = std::upper_bound(begin, end, whole) - 1;
-  const std::uint32_t width = step[1] - step[0];
-  const double fraction = (place - step[0]) / width;
-  return {static_cast<int>(step - cdf), width,
-          std::clamp(static_cast<float>(fraction), 0.0F, 0x1.fffffep-1F)};
+/// The step of the cdf that u falls in: from where the guide says, one step further on average.
+LightDistribution::Step LightDistribution::find(const std::uint32_t* cdf,
+                                                const std::uint32_t* guide, int count, float u) {
+  constexpr std::int64_t last = std::int64_t{one} - 1;
+  const auto place = static_cast<std::uint32_t>(
+      std::min(static_cast<std::int64_t>(u * static_cast<float>(one)), last));
+  std::uint32_t step = guide[(std::uint64_t{place} * static_cast<std::uint64_t>(count)) >> 31U];
+  while (cdf[step + 1] <= place)
+    ++step;
+  const std::uint32_t width = cdf[step + 1] - cdf[step];
+  const float fraction = (static_cast<float>(place - cdf[step]) + 0.5F) / static_cast<float>(width);
+  return {static_cast<int>(step), width, std::min(fraction, 0x1.fffffep-1F)};
 }
 
-LightDistribution::Step LightDistribution::find_column(int row, float u) const {
-  const auto y = static_cast<std::size_t>(row);
-  const std::uint32_t* cdf = m_columns.data() + y * static_cast<std::size_t>(m_width + 1);
-  const std::uint32_t* guide = m_guide.data() + y * static_cast<std::size_t>(m_guides + 1);
-  const auto whole = std::min(static_cast<std::uint32_t>(static_cast<double>(u) * one), one - 1);
-  const auto part = (std::uint64_t{whole} * static_cast<std::uint64_t>(m_guides)) >> 31U;
-  const std::uint32_t* begin = cdf + guide[part];
-  const std::uint32_t* end = cdf + std::min<std::uint32_t>(guide[part + 1] + 1, m_width);
-  return find(begin, std::max(end, begin + 1), cdf, u);
-}
-
-Vec2 LightDistribution::point_in_pixel(int x, int y, const Vec2& u, float& area) const {
-  const Vec2 size(static_cast<float>(m_width), static_cast<float>(m_height));
-  area = 1.0F / (size.x() * size.y());
+/// The place in a pixel that the two fractions stand for, and the area it is uniform in.
+LightDistribution::Place LightDistribution::place_in_pixel(const Step& column,
+                                                           const Step& row) const {
   if (is_round(m_mapping)) {
-    const PixelRectangle pixel(x, y, m_width, m_height);
-    if (pixel.crosses_rim()) {
-      float a_from = 0;
-      float a_to = 0;
-      float b_from = 0;
-      float b_to = 0;
-      pixel.columns(a_from, a_to);
-      const float a = a_from + u.x() * (a_to - a_from);
-      pixel.rows(a, b_from, b_to);
-      area = 0.25F * (a_to - a_from) * (b_to - b_from);
-      return {0.5F + 0.5F * a, 0.5F + 0.5F * (b_from + u.y() * (b_to - b_from))};
-    }
+    const PixelRectangle pixel(column.index, row.index, m_width, m_height);
+    if (pixel.crosses_rim())
+      return place_at_rim(pixel, column.fraction, row.fraction);
   }
-  return (Vec2(static_cast<float>(x), static_cast<float>(y)) + u).cwiseQuotient(size);
+  const float across = 1.0F / static_cast<float>(m_width);
+  const float down = 1.0F / static_cast<float>(m_height);
+  return {(static_cast<float>(column.index) + column.fraction) * across,
+          (static_cast<float>(row.index) + row.fraction) * down, across * down};
 }
 
-/// The area in (u, v) that stands for a pixel's density at a point in it.
-float LightDistribution::pixel_area(int x, int y, const Vec2& uv) const {
-  const PixelRectangle pixel(x, y, m_width, m_height);
-  if (!is_round(m_mapping) || !pixel.crosses_rim())
-    return 1.0F / (static_cast<float>(m_width) * static_cast<float>(m_height));
+LightDistribution::Place LightDistribution::place_at_rim(const PixelRectangle& pixel, float s,
+                                                         float t) {
   float a_from = 0;
   float a_to = 0;
   float b_from = 0;
   float b_to = 0;
   pixel.columns(a_from, a_to);
-  pixel.rows(2.0F * uv.x() - 1.0F, b_from, b_to);
+  const float a = a_from + s * (a_to - a_from);
+  pixel.rows(a, b_from, b_to);
+  const float b = b_from + t * (b_to - b_from);
+  return {0.5F + 0.5F * a, 0.5F + 0.5F * b, 0.25F * (a_to - a_from) * (b_to - b_from)};
+}
+
+/// The area in (u, v) that a pixel's probability is spread over, as it counts at a place in it.
+float LightDistribution::pixel_area(int x, int y, float u) const {
+  const PixelRectangle pixel(x, y, m_width, m_height);
+  if (!is_round(m_mapping) || !pixel.crosses_rim())
+    return 1.0F / static_cast<float>(m_width) * (1.0F / static_cast<float>(m_height));
+  float a_from = 0;
+  float a_to = 0;
+  float b_from = 0;
+  float b_to = 0;
+  pixel.columns(a_from, a_to);
+  pixel.rows(2.0F * u - 1.0F, b_from, b_to);
   return 0.25F * (a_to - a_from) * (b_to - b_from);
 }
 
-float LightDistribution::density(std::uint32_t row_width, std::uint32_t column_width, float area,
-                                 const Vec2& uv) const {
+/// @param solid_angle what the pixel's probability is spread over, as seen from the point
+float LightDistribution::density(std::uint32_t row_width, std::uint32_t column_width,
+                                 float solid_angle) {
   constexpr float unit = 1.0F / static_cast<float>(one);
   const float probability =
-      static_cast<float>(row_width) * unit * (static_cast<float>(column_width) * unit);
-  return probability / (std::max(area, 1e-20F) * solid_angle_density(m_mapping, uv));
+      (static_cast<float>(row_width) * unit) * (static_cast<float>(column_width) * unit);
+  return probability / std::max(solid_angle, 1e-30F);
 }
 
 LightSample LightDistribution::sample(const Vec2& u) const {
-  const Step row = find(m_rows.data(), m_rows.data() + m_height, m_rows.data(), u.y());
-  const Step column = find_column(row.index, u.x());
-  float area = 0;
-  const Vec2 uv = point_in_pixel(column.index, row.index, {column.fraction, row.fraction}, area);
-  return {image_to_direction(m_mapping, uv), density(row.width, column.width, area, uv)};
+  const Step row = find(m_rows.data(), m_row_guide.data(), m_height, u.y());
+  const auto y = static_cast<std::size_t>(row.index);
+  const auto width = static_cast<std::size_t>(m_width);
+  const Step column =
+      find(m_columns.data() + y * (width + 1), m_column_guide.data() + y * width, m_width, u.x());
+  const Place place = place_in_pixel(column, row);
+  return with_mapping(m_mapping, [&](auto map) -> LightSample {
+    float wx = 0;
+    float wy = 0;
+    float wz = 0;
+    float stretch = 0;
+    map.direction_and_density(place.u, place.v, wx, wy, wz, stretch);
+    return {{wx, wy, wz}, density(row.width, column.width, place.area * stretch)};
+  });
 }
 
 float LightDistribution::pdf(const Vec3& w) const {
@@ -156,7 +167,8 @@ float LightDistribution::pdf(const Vec3& w) const {
   const auto row = static_cast<std::size_t>(y);
   const std::uint32_t* cdf =
       m_columns.data() + row * static_cast<std::size_t>(m_width + 1) + static_cast<std::size_t>(x);
-  return density(m_rows[row + 1] - m_rows[row], cdf[1] - cdf[0], pixel_area(x, y, uv), uv);
+  return density(m_rows[row + 1] - m_rows[row], cdf[1] - cdf[0],
+                 pixel_area(x, y, uv.x()) * solid_angle_density(m_mapping, uv));
 }
 
 } // namespace haarlight::probe

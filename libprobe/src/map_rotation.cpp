@@ -1,5 +1,7 @@
 #include "map_rotation.h"
 
+#include "point_kernels.h"
+
 #include <wavelet/lanes.h>
 #include <wavelet/sphere_map.h>
 
@@ -51,39 +53,18 @@ Float4 load(const float* values) {
   return result;
 }
 
-/// Bilinear look-ups in a level, across the folded edges of the square.
+/// Bilinear look-ups in a level, whose border holds what lies beyond the folded edges of the
+/// square.
 class Sampler {
 public:
   explicit Sampler(const WorldLevel& level)
-      : m_data(level.rgbx.data()), m_row(4 * static_cast<std::size_t>(level.size + 2)),
-        m_size(static_cast<float>(level.size)) {}
+      : m_data(level.rgbx.data()), m_row(4 * static_cast<std::size_t>(level.size + 2)) {}
 
-  /// Adds four neighbouring pixels' samples to four sums.
-  void add(const Look& look, Float4 square_u, Float4 square_v, Float4* sums) const {
-    Float4 lx;
-    Float4 ly;
-    Float4 lz;
-    wavelet::square_to_sphere(square_u, square_v, lx, ly, lz);
-    const Frame& f = look.frame;
-    const Float4 x = lx * f.t.x() + ly * f.b.x() + lz * f.n.x();
-    const Float4 y = lx * f.t.y() + ly * f.b.y() + lz * f.n.y();
-    const Float4 z = lx * f.t.z() + ly * f.b.z() + lz * f.n.z();
-    Float4 u;
-    Float4 v;
-    wavelet::sphere_to_square(x, y, z, u, v);
-    // Counted from the centre of the border pixel, so never negative.
-    const Float4 column = smaller(u, broadcast<Float4>(1)) * m_size + 0.5F;
-    const Float4 row = smaller(v, broadcast<Float4>(1)) * m_size + 0.5F;
-    const Int4 ix = __builtin_convertvector(column, Int4);
-    const Int4 iy = __builtin_convertvector(row, Int4);
-    const Float4 s = column - __builtin_convertvector(ix, Float4);
-    const Float4 t = row - __builtin_convertvector(iy, Float4);
-    for (int i = 0; i < 4; ++i)
-      sums[i] += interpolated(ix[i], iy[i], s[i], t[i]);
-  }
-
-private:
-  Float4 interpolated(int x, int y, float s, float t) const {
+  Float4 at(float column, float row) const {
+    const int x = static_cast<int>(column);
+    const int y = static_cast<int>(row);
+    const float s = column - static_cast<float>(x);
+    const float t = row - static_cast<float>(y);
     const float* texel =
         m_data + static_cast<std::size_t>(y) * m_row + 4 * static_cast<std::size_t>(x);
     const Float4 upper = load(texel) + (load(texel + 4) - load(texel)) * s;
@@ -92,28 +73,56 @@ private:
     return upper + (lower - upper) * t;
   }
 
+private:
   const float* m_data;
   std::size_t m_row;
-  float m_size;
 };
 
-void make_row(const Sampler& sampler, const std::vector<Look>& looks, wavelet::Map& map, int y,
-              std::vector<Float4>& sums) {
-  const auto size = static_cast<float>(map.size);
-  std::fill(sums.begin(), sums.end(), Float4{});
-  for (const Look& look : looks) {
-    const Float4 v = broadcast<Float4>((static_cast<float>(y) + look.in_pixel.y()) / size);
-    for (int x = 0; x < map.size; x += 4) {
-      const Float4 u = (static_cast<float>(x) + look.in_pixel.x() + Float4{0, 1, 2, 3}) / size;
-      sampler.add(look, u, v, sums.data() + x);
+/// Makes the rows of one cell's map; what it needs for a row is allocated once.
+class RowMaker {
+public:
+  RowMaker(const WorldLevel& level, const MapOptions& options, int column, int row)
+      : m_size(options.size), m_level_size(level.size), m_sampler(level),
+        m_looks(looks_of_cell(options, column, row)),
+        m_points((m_size + point_step - 1) / point_step * point_step),
+        m_columns(static_cast<std::size_t>(m_points)), m_rows(m_columns.size()),
+        m_sums(m_columns.size()) {}
+
+  void make(wavelet::Map& map, int y) {
+    std::fill(m_sums.begin(), m_sums.end(), Sum{});
+    for (const Look& look : m_looks)
+      add(look, y);
+    const float share = 1.0F / static_cast<float>(m_looks.size());
+    for (int x = 0; x < m_size; ++x) {
+      const Float4 mean = m_sums[static_cast<std::size_t>(x)].rgbx * share;
+      map.set(x, y, Rgb(mean[0], mean[1], mean[2]));
     }
   }
-  const float share = 1.0F / static_cast<float>(looks.size());
-  for (int x = 0; x < map.size; ++x) {
-    const Float4 mean = sums[static_cast<std::size_t>(x)] * share;
-    map.set(x, y, Rgb(mean[0], mean[1], mean[2]));
+
+private:
+  struct Sum {
+    Float4 rgbx = {};
+  };
+
+  void add(const Look& look, int y) {
+    const float step = 1.0F / static_cast<float>(m_size);
+    find_places(look.frame, m_level_size,
+                {look.in_pixel.x() * step, step, (static_cast<float>(y) + look.in_pixel.y()) * step,
+                 m_points},
+                m_columns.data(), m_rows.data());
+    for (std::size_t x = 0; x < static_cast<std::size_t>(m_size); ++x)
+      m_sums[x].rgbx += m_sampler.at(m_columns[x], m_rows[x]);
   }
-}
+
+  int m_size;
+  int m_level_size;
+  Sampler m_sampler;
+  std::vector<Look> m_looks;
+  int m_points;
+  std::vector<float> m_columns;
+  std::vector<float> m_rows;
+  std::vector<Sum> m_sums;
+};
 
 /// Averages squares of two by two pixels.
 wavelet::Map halved(const wavelet::Map& map) {
@@ -165,12 +174,10 @@ WorldLevel make_level(const wavelet::Map& map, int size) {
 }
 
 wavelet::Map rotated_map(const WorldLevel& level, const MapOptions& options, int column, int row) {
-  const std::vector<Look> looks = looks_of_cell(options, column, row);
-  const Sampler sampler(level);
   wavelet::Map map(options.size);
-  std::vector<Float4> sums(static_cast<std::size_t>(map.size));
+  RowMaker maker(level, options, column, row);
   for (int y = 0; y < map.size; ++y)
-    make_row(sampler, looks, map, y, sums);
+    maker.make(map, y);
   return map;
 }
 

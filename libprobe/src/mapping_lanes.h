@@ -18,18 +18,25 @@ struct AngularMap {
 
   template <class F>
   static void direction(F u, F v, F& x, F& y, F& z) {
+    F unused;
+    direction_and_density(u, v, x, y, z, unused);
+  }
+
+  template <class F>
+  static void direction_and_density(F u, F v, F& x, F& y, F& z, F& density_there) {
     const F one = broadcast<F>(1);
     const F a = 2.0F * u - 1.0F;
     const F b = 1.0F - 2.0F * v;
     const F r = square_root(a * a + b * b);
-    const F held = smaller(r, one);
     F sine;
     F cosine;
-    sine_cosine(held * pi, sine, cosine);
-    const F planar = select(r > broadcast<F>(0), sine / select(r > broadcast<F>(0), r, one), one);
+    sine_cosine(smaller(r, one) * pi, sine, cosine);
+    const auto off_centre = r > broadcast<F>(1e-6F);
+    const F planar = select(off_centre, sine / select(off_centre, r, one), broadcast<F>(pi));
     x = a * planar;
     y = b * planar;
     z = -cosine;
+    density_there = larger(4.0F * pi * planar, broadcast<F>(least_density));
   }
 
   template <class F>
@@ -44,13 +51,12 @@ struct AngularMap {
 
   template <class F>
   static F density(F u, F v) {
-    const F a = 2.0F * u - 1.0F;
-    const F b = 1.0F - 2.0F * v;
-    const F r = larger(square_root(a * a + b * b), broadcast<F>(1e-6F));
-    F sine;
-    F cosine;
-    sine_cosine(smaller(r, broadcast<F>(1)) * pi, sine, cosine);
-    return larger(4.0F * pi * sine / r, broadcast<F>(least_density));
+    F x;
+    F y;
+    F z;
+    F result;
+    direction_and_density(u, v, x, y, z, result);
+    return result;
   }
 };
 
@@ -72,6 +78,12 @@ struct LatLongMap {
   static void image(F x, F y, F z, F& u, F& v) {
     u = 0.5F + arctangent(x, -z) * (0.5F / pi);
     v = arctangent(square_root(x * x + z * z), y) * (1.0F / pi);
+  }
+
+  template <class F>
+  static void direction_and_density(F u, F v, F& x, F& y, F& z, F& density_there) {
+    direction(u, v, x, y, z);
+    density_there = density(u, v);
   }
 
   template <class F>
@@ -113,6 +125,12 @@ struct MirrorBallMap {
   }
 
   template <class F>
+  static void direction_and_density(F u, F v, F& x, F& y, F& z, F& density_there) {
+    direction(u, v, x, y, z);
+    density_there = density(u, v);
+  }
+
+  template <class F>
   static F density(F /*u*/, F /*v*/) {
     return broadcast<F>(16);
   }
@@ -129,6 +147,12 @@ struct OctahedralMap {
   static void image(F x, F y, F z, F& u, F& v) {
     wavelet::sphere_to_square(x, y, z, u, v);
   }
+  template <class F>
+  static void direction_and_density(F u, F v, F& x, F& y, F& z, F& density_there) {
+    direction(u, v, x, y, z);
+    density_there = density(u, v);
+  }
+
   template <class F>
   static F density(F /*u*/, F /*v*/) {
     return broadcast<F>(wavelet::sphere_area);

@@ -57,10 +57,12 @@ double rim_pixel(Map map, const PixelRectangle& pixel) {
     float b_from = 0;
     float b_to = 0;
     pixel.rows(a, b_from, b_to);
-    const float v = 0.5F + 0.25F * (b_from + b_to);
-    sum += static_cast<double>(map.density(0.5F + 0.5F * a, v)) * (b_to - b_from);
+    for (int j = 0; j < strips; ++j) {
+      const float b = b_from + (b_to - b_from) * (static_cast<float>(j) + 0.5F) / strips;
+      sum += static_cast<double>(map.density(0.5F + 0.5F * a, 0.5F + 0.5F * b)) * (b_to - b_from);
+    }
   }
-  return 0.25 * sum * (a_to - a_from) / strips;
+  return 0.25 * sum * (a_to - a_from) / (strips * strips);
 }
 
 template <class Map>

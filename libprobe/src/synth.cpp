@@ -6,6 +6,7 @@
 
 #include <wavelet/parallel.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -129,19 +130,21 @@ private:
   std::vector<Lamp> m_lamps;
 };
 
-/// Whether a pixel of this angular extent about a direction may meet the edge of a spot.
-bool near_spot(const std::vector<BrightSpot>& spots, const Vec3& w, float extent) {
+/// Samples along a side of a pixel of this angular size: enough to draw the edges of spots it
+/// meets.
+int samples_along(const std::vector<BrightSpot>& spots, const Vec3& w, float pixel) {
+  float wanted = 4;
   for (const BrightSpot& spot : spots)
-    if ((w - spot.direction).norm() < spot.radius + extent)
-      return true;
-  return false;
+    if ((w - spot.direction).norm() < spot.radius + 0.75F * pixel)
+      wanted = std::max({wanted, 16.0F, 12 * pixel / spot.radius});
+  return static_cast<int>(std::min(wanted, 256.0F));
 }
 
 Rgb draw_pixel(const Scene& scene, const std::vector<BrightSpot>& spots, int x, int y, int size) {
   const float scale = 1.0F / static_cast<float>(size);
   const Vec2 corner(static_cast<float>(x) * scale, static_cast<float>(y) * scale);
   const Vec3 middle = image_to_direction(Mapping::Angular, corner + Vec2(0.5F, 0.5F) * scale);
-  const int along = near_spot(spots, middle, 5 * scale) ? 32 : 4;
+  const int along = samples_along(spots, middle, 2 * pi * scale);
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   double weights = 0;
   for (int j = 0; j < along; ++j)

@@ -1,11 +1,12 @@
 #include <probe/probe_maps.h>
 
 #include "mapping_lanes.h"
-#include "pixel_shape.h"
+#include "point_kernels.h"
 
 #include <wavelet/parallel.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -13,7 +14,7 @@ namespace haarlight::probe {
 namespace {
 
 /// Samples that a probe pixel gets at least, where the sampling of map pixels can be chosen so.
-constexpr float samples_per_texel = 16;
+constexpr float samples_per_texel = 64;
 constexpr int most_samples_along = 64;
 
 /// A probe pixel whose excess over its neighbours is spread by area instead of being sampled.
@@ -29,22 +30,32 @@ struct Split {
   std::vector<Peak> peaks;
 };
 
+bool is_own_pixel(const Probe& probe, int x, int y) {
+  if (x < 0 || y < 0 || x >= probe.width() || y >= probe.height())
+    return false;
+  const Vec2 centre((static_cast<float>(x) + 0.5F) / static_cast<float>(probe.width()),
+                    (static_cast<float>(y) + 0.5F) / static_cast<float>(probe.height()));
+  return in_map(probe.mapping(), centre);
+}
+
+/// Of the eight around a pixel; what lies beyond the map, perhaps a copy of the pixel itself,
+/// counts as black.
 Rgb mean_of_neighbours(const Probe& probe, int x, int y) {
   Rgb sum(0, 0, 0);
   for (int j = -1; j <= 1; ++j)
     for (int i = -1; i <= 1; ++i)
-      if (i != 0 || j != 0)
+      if ((i != 0 || j != 0) && is_own_pixel(probe, x + i, y + j))
         sum += probe.pixel(x + i, y + j);
   return sum / 8;
 }
 
-/// Base: no more than twice the luminance of the eight neighbours' mean.
+/// Base: no more than four times the luminance of the eight neighbours' mean.
 Split split_row(const Probe& probe, int y) {
   Split row;
   row.base.resize(4 * static_cast<std::size_t>(probe.width()));
   for (int x = 0; x < probe.width(); ++x) {
     const Rgb value = probe.pixel(x, y);
-    const float limit = 2 * luminance(mean_of_neighbours(probe, x, y));
+    const float limit = 4 * luminance(mean_of_neighbours(probe, x, y));
     const float own = luminance(value);
     const float kept = own > limit ? limit / own : 1.0F;
     Eigen::Map<Rgb>(row.base.data() + 4 * static_cast<std::size_t>(x)) = kept * value;
@@ -79,69 +90,60 @@ template <class Map>
 class Gatherer {
 public:
   Gatherer(const Probe& probe, const std::vector<float>& base, int size, int supersample)
-      : m_base(base), m_width(probe.width()), m_last_column(static_cast<float>(m_width - 1)),
-        m_last_row(static_cast<float>(probe.height() - 1)), m_columns(static_cast<float>(m_width)),
-        m_rows(static_cast<float>(probe.height())), m_size(static_cast<float>(size)),
-        m_supersample(supersample) {}
+      : m_base(base), m_shape{probe.mapping(), probe.width(), probe.height()},
+        m_size(static_cast<float>(size)), m_supersample(supersample) {}
 
   Rgb average(int x, int y) const {
     const int along = samples_along(x, y);
-    const float step = 1.0F / static_cast<float>(along);
+    const float step = 1.0F / (static_cast<float>(along) * m_size);
+    PointRow points;
+    points.first_u = static_cast<float>(x) / m_size + 0.5F * step;
+    points.step = step;
+    points.count = along;
     Float4 sum = {};
     for (int j = 0; j < along; ++j) {
-      const float v = (static_cast<float>(y) + (static_cast<float>(j) + 0.5F) * step) / m_size;
-      for (int i = 0; i < along; i += 4) {
-        const Float4 offset = (static_cast<float>(i) + Float4{0.5F, 1.5F, 2.5F, 3.5F}) * step;
-        sum += four_samples((static_cast<float>(x) + offset) / m_size, broadcast<Float4>(v));
-      }
+      points.v = static_cast<float>(y) / m_size + (static_cast<float>(j) + 0.5F) * step;
+      sum += sum_of_row(points);
     }
-    return Rgb(sum[0], sum[1], sum[2]) * (step * step);
+    return Rgb(sum[0], sum[1], sum[2]) / static_cast<float>(along * along);
   }
 
 private:
-  /// A multiple of four.
+  /// A multiple of point_step.
   int samples_along(int x, int y) const {
     const Vec2 square((static_cast<float>(x) + 0.5F) / m_size,
                       (static_cast<float>(y) + 0.5F) / m_size);
     const Vec3 w = wavelet::square_to_sphere(square);
     Vec2 uv;
     Map::image(w.x(), w.y(), w.z(), uv.x(), uv.y());
-    const float texel = Map::density(uv.x(), uv.y()) / (m_columns * m_rows);
+    const float texels = static_cast<float>(m_shape.width) * static_cast<float>(m_shape.height);
+    const float texel = Map::density(uv.x(), uv.y()) / texels;
     const float pixel = wavelet::sphere_area / (m_size * m_size);
     const float wanted = std::min(std::sqrt(samples_per_texel * pixel / texel),
                                   static_cast<float>(most_samples_along));
     const int along = std::max(m_supersample, static_cast<int>(std::ceil(wanted)));
-    return (along + 3) / 4 * 4;
+    return (along + point_step - 1) / point_step * point_step;
   }
 
-  Float4 four_samples(Float4 square_u, Float4 square_v) const {
-    Float4 x;
-    Float4 y;
-    Float4 z;
-    Float4 u;
-    Float4 v;
-    wavelet::square_to_sphere(square_u, square_v, x, y, z);
-    Map::image(x, y, z, u, v);
-    const Float4 column = smaller(u * m_columns, broadcast<Float4>(m_last_column));
-    const Float4 row = smaller(v * m_rows, broadcast<Float4>(m_last_row));
-    const auto ix = __builtin_convertvector(column, Int4);
-    const auto iy = __builtin_convertvector(row, Int4);
-    return (texel(ix[0], iy[0]) + texel(ix[1], iy[1])) +
-           (texel(ix[2], iy[2]) + texel(ix[3], iy[3]));
-  }
-
-  Float4 texel(int x, int y) const {
-    return load(m_base.data() +
-                4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width) +
-                     static_cast<std::size_t>(x)));
+  Float4 sum_of_row(const PointRow& points) const {
+    std::array<std::int32_t, point_step> texels;
+    PointRow part = points;
+    part.count = point_step;
+    Float4 even = {};
+    Float4 odd = {};
+    for (int i = 0; i < points.count; i += point_step) {
+      part.first_u = points.first_u + static_cast<float>(i) * points.step;
+      find_texels(m_shape, part, texels.data());
+      for (std::size_t k = 0; k < texels.size(); k += 2) {
+        even += load(m_base.data() + 4 * static_cast<std::size_t>(texels[k]));
+        odd += load(m_base.data() + 4 * static_cast<std::size_t>(texels[k + 1]));
+      }
+    }
+    return even + odd;
   }
 
   const std::vector<float>& m_base;
-  int m_width;
-  float m_last_column;
-  float m_last_row;
-  float m_columns;
-  float m_rows;
+  PictureShape m_shape;
   float m_size;
   int m_supersample;
 };

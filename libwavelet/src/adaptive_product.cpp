@@ -1,7 +1,7 @@
 #include <wavelet/product.h>
 #include <wavelet/sphere_map.h>
 
-#include <cmath>
+#include <numeric>
 
 namespace haarlight::wavelet {
 namespace {
@@ -20,10 +20,11 @@ int morton_column(unsigned code) {
 } // namespace
 
 AdaptiveProduct::AdaptiveProduct(const TreeView& light) : m_light(light) {
+  m_product.m_light = light;
   // The families of level start_level − 1 and the nodes above them are the same for every product.
   for (unsigned code = 0; code < (1U << (2 * (start_level - 1))); ++code) {
     Family family = {to_lanes(light.mean), light.root(), 0, start_level - 1, morton_column(code),
-                     morton_column(code >> 1U)};
+                     morton_column(code >> 1U), no_place};
     for (int l = start_level - 2; l >= 0; --l) {
       const unsigned q = (code >> static_cast<unsigned>(2 * l)) & 3U;
       if (family.node != no_node)
@@ -67,121 +68,156 @@ void AdaptiveProduct::start() {
     first += count;
   }
   auto product_node = static_cast<std::int32_t>(m_product.m_nodes.size() - m_start.size());
-  for (Family family : m_start) {
+  m_families = m_start;
+  for (Family& family : m_families)
     family.product_node = product_node++;
-    add_children(family, m_squares.size());
-  }
+  expand(m_families);
 }
 
-/// The reflectance over the four quadrants of a family, and which of them see above the horizon.
-void AdaptiveProduct::look_up(const Family& family, std::array<Float4, 4>& reflectance,
-                              Int4& visible) const {
+/// Where the quadrants of a family lie in the reflectance's frame.
+void AdaptiveProduct::place(const Family& family, Quadrants& quadrants) const {
   const int level = family.level + 1;
-  const float side = std::ldexp(1.0F, -level);
+  const float side = power_of_two(-level);
   const Float4 column = {0.5F, 1.5F, 0.5F, 1.5F};
   const Float4 row = {0.5F, 0.5F, 1.5F, 1.5F};
-  const Float4 u = (column + static_cast<float>(2 * family.x)) * side;
-  const Float4 v = (row + static_cast<float>(2 * family.y)) * side;
   Float4 wx;
   Float4 wy;
   Float4 wz;
-  square_to_sphere(u, v, wx, wy, wz);
+  square_to_sphere((column + static_cast<float>(2 * family.x)) * side,
+                   (row + static_cast<float>(2 * family.y)) * side, wx, wy, wz);
   const ReflectionFrame& r = m_reflectance.reflection;
   const Float4 x = r.frame.t.x() * wx + r.frame.t.y() * wy + r.frame.t.z() * wz;
   const Float4 y = r.frame.b.x() * wx + r.frame.b.y() * wy + r.frame.b.z() * wz;
   const Float4 z = r.frame.n.x() * wx + r.frame.n.y() * wy + r.frame.n.z() * wz;
-  visible = r.sin_theta_r * x + r.cos_theta_r * z > Float4{} - square_radius * side;
-  Float4 bu;
-  Float4 bv;
-  sphere_to_square(x, y, z, bu, bv);
+  quadrants.visible = r.sin_theta_r * x + r.cos_theta_r * z > Float4{} - square_radius * side;
+  Float4 u;
+  Float4 v;
+  sphere_to_square(x, y, z, u, v);
+  quadrants.places =
+      m_reflectance.pyramid->places(std::min(level, m_reflectance.pyramid->levels()), u, v);
+}
+
+/// The reflectance over the quadrants; 0 below the horizon.
+void AdaptiveProduct::look_up(Quadrants& quadrants) const {
   const Pyramid& pyramid = *m_reflectance.pyramid;
-  const int looked_up = std::min(level, pyramid.levels());
-  for (int q = 0; q < 4; ++q)
-    if (visible[q] != 0) {
-      const Float4 near = pyramid.lookup(m_reflectance.entry0, looked_up, bu[q], bv[q]);
-      const Float4 far = pyramid.lookup(m_reflectance.entry1, looked_up, bu[q], bv[q]);
-      reflectance[static_cast<std::size_t>(q)] = near + (far - near) * m_reflectance.blend;
-    }
-}
-
-AdaptiveProduct::Square AdaptiveProduct::make_square(const Family& family, unsigned q, Float4 light,
-                                                     Float4 reflectance) const {
-  const int level = family.level + 1;
-  const float deviation = reflectance[3];
-  reflectance[3] = 0;
-  const Float4 floored = larger(reflectance, m_floor);
-  Square s;
-  s.light = light;
-  s.weights = floored * luminance_lanes;
-  s.product = light * reflectance;
-  s.node = m_light.child(family.node, q);
-  s.slot = 4 * family.product_node + static_cast<std::int32_t>(q);
-  s.level = level;
-  s.x = 2 * family.x + static_cast<int>(q & 1U);
-  s.y = 2 * family.y + static_cast<int>(q >> 1U);
-  const float area = std::ldexp(1.0F, -2 * level);
-  s.weight = area * std::max(lane_sum(light * s.weights), 0.0F);
-  const float relative = deviation / (lane_sum(s.weights) + 1e-30F);
-  s.error = level < m_reflectance.pyramid->levels() ? s.weight * relative * relative : 0.0F;
-  return s;
-}
-
-/// Adds a family's visible quadrants; the first takes the place `reuse`, the rest are appended.
-void AdaptiveProduct::add_children(const Family& family, std::size_t reuse) {
-  std::array<Float4, 4> reflectance;
-  Int4 visible;
-  look_up(family, reflectance, visible);
-  std::array<Float4, 4> light = {family.light, family.light, family.light, family.light};
-  if (family.node != no_node)
-    light = m_light.details(family.node).children(family.light);
-  for (unsigned q = 0; q < 4; ++q) {
-    if (visible[q] == 0)
+  for (int q = 0; q < 4; ++q) {
+    Float4& value = quadrants.reflectance[static_cast<std::size_t>(q)];
+    value = Float4{};
+    if (quadrants.visible[q] == 0)
       continue;
-    const Square square = make_square(family, q, light[q], reflectance[q]);
-    m_weight += static_cast<double>(square.weight);
-    m_error += static_cast<double>(square.error);
-    if (reuse < m_squares.size()) {
-      m_squares[reuse] = square;
-      reuse = m_squares.size();
-    } else {
-      m_squares.push_back(square);
-      reuse = m_squares.size();
+    const Float4 near = pyramid.lookup(m_reflectance.entry0, quadrants.places, q);
+    const Float4 far = pyramid.lookup(m_reflectance.entry1, quadrants.places, q);
+    value = near + (far - near) * m_reflectance.blend;
+  }
+}
+
+/// What each quadrant adds to the total, and to the variance if it stays a leaf.
+void AdaptiveProduct::weigh(const Family& family, Quadrants& quadrants) const {
+  const int level = family.level + 1;
+  auto [lr, lg, lb, l0] = quadrants.light;
+  auto [br, bg, bb, deviation] = quadrants.reflectance;
+  transpose(lr, lg, lb, l0);
+  transpose(br, bg, bb, deviation);
+  const Float4 zero = {};
+  const Float4 r = larger(br, zero + m_floor[0]) * luminance_lanes[0];
+  const Float4 g = larger(bg, zero + m_floor[1]) * luminance_lanes[1];
+  const Float4 b = larger(bb, zero + m_floor[2]) * luminance_lanes[2];
+  const Float4 density = larger(lr * r + lg * g + lb * b, zero);
+  const Float4 relative = deviation / (r + g + b + 1e-30F);
+  quadrants.weight = density * power_of_two(-2 * level);
+  quadrants.error = level < m_reflectance.pyramid->levels()
+                        ? quadrants.weight * relative * relative
+                        : zero;
+}
+
+/// Adds a family's visible quadrants; the first takes the family's place, the rest are appended.
+void AdaptiveProduct::add(const Family& family, const Quadrants& quadrants) {
+  std::uint32_t place = family.place;
+  for (unsigned q = 0; q < 4; ++q) {
+    if (quadrants.visible[q] == 0)
+      continue;
+    if (place == no_place) {
+      place = static_cast<std::uint32_t>(m_squares.size());
+      m_squares.emplace_back();
     }
+    Square& s = m_squares[place];
+    m_added.push_back(place);
+    place = no_place;
+    s.light = quadrants.light[q];
+    s.reflectance = quadrants.reflectance[q];
+    s.node = m_light.child(family.node, q);
+    s.slot = 4 * family.product_node + static_cast<std::int32_t>(q);
+    s.x = static_cast<std::uint16_t>(2 * family.x + static_cast<int>(q & 1U));
+    s.y = static_cast<std::uint16_t>(2 * family.y + static_cast<int>(q >> 1U));
+    s.level = family.level + 1;
+    s.weight = quadrants.weight[q];
+    s.error = quadrants.error[q];
   }
-  if (reuse < m_squares.size()) { // nothing was visible: the place is empty
-    m_squares[reuse].weight = m_squares[reuse].error = 0;
-    m_squares[reuse].product = Float4{};
-    m_squares[reuse].slot = -1;
+  if (place != no_place) { // nothing was visible: the place is empty
+    m_squares[place].weight = m_squares[place].error = 0;
+    m_squares[place].slot = -1;
+  }
+  m_weight += static_cast<double>(lane_sum(quadrants.weight));
+  m_error += static_cast<double>(lane_sum(quadrants.error));
+}
+
+void AdaptiveProduct::expand(std::span<const Family> families) {
+  std::array<Quadrants, batch_size> batch;
+  for (std::size_t begin = 0; begin < families.size(); begin += batch_size) {
+    const std::size_t count = std::min(batch_size, families.size() - begin);
+    const Family* family = families.data() + begin;
+    for (std::size_t i = 0; i < count; ++i)
+      place(family[i], batch[i]);
+    for (std::size_t i = 0; i < count; ++i)
+      look_up(batch[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      batch[i].light.fill(family[i].light);
+      if (family[i].node != no_node)
+        batch[i].light = m_light.details(family[i].node).children(family[i].light);
+      weigh(family[i], batch[i]);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      add(family[i], batch[i]);
   }
 }
 
-void AdaptiveProduct::split(std::size_t index) {
-  const Square square = m_squares[index];
+/// Makes a product node of a square.
+AdaptiveProduct::Family AdaptiveProduct::split(std::uint32_t index) {
+  const Square& s = m_squares[index];
   const auto product_node = static_cast<std::int32_t>(m_product.m_nodes.size());
-  m_weight -= static_cast<double>(square.weight);
-  m_error -= static_cast<double>(square.error);
+  m_weight -= static_cast<double>(s.weight);
+  m_error -= static_cast<double>(s.error);
   m_product.m_nodes.emplace_back();
-  m_product.m_nodes[static_cast<std::size_t>(square.slot / 4)].child[square.slot % 4] = product_node;
-  m_parent_slots.push_back(square.slot);
-  add_children({square.light, square.node, product_node, square.level, square.x, square.y}, index);
+  m_product.m_nodes[static_cast<std::size_t>(s.slot / 4)].child[s.slot % 4] = product_node;
+  m_parent_slots.push_back(s.slot);
+  return {s.light, s.node, product_node, s.level, s.x, s.y, index};
 }
 
-/// Pass by pass, splits every square whose error is at least the mean of the pass, and its quadrants
-/// with it, until the bound holds.
+/// Pass by pass, splits every square whose error is above the mean of the pass, and its quadrants with
+/// it, until the bound holds.
 void AdaptiveProduct::refine(const AdaptiveOptions& options) {
   const auto limit = static_cast<std::size_t>(options.max_leaves);
   const auto bound = static_cast<double>(options.variance_bound);
-  while (m_error > bound * m_weight && m_squares.size() + 3 <= limit) {
-    const auto threshold =
-        static_cast<float>(0.999 * m_error / static_cast<double>(m_squares.size()));
-    bool any = false;
-    for (std::size_t i = 0; i < m_squares.size(); ++i)
-      while (m_squares[i].error > threshold && m_squares.size() + 3 <= limit) {
-        split(i);
-        any = true;
-      }
-    if (!any)
-      break;
+  std::size_t before = 0;
+  while (m_error > bound * m_weight && m_squares.size() != before) {
+    before = m_squares.size();
+    m_fresh.resize(before);
+    std::iota(m_fresh.begin(), m_fresh.end(), 0U);
+    refine_above(static_cast<float>(0.999 * m_error / static_cast<double>(before)), limit);
+  }
+}
+
+void AdaptiveProduct::refine_above(float threshold, std::size_t limit) {
+  while (true) {
+    m_families.clear();
+    for (const std::uint32_t index : m_fresh)
+      if (m_squares[index].error > threshold && m_squares.size() + 3 * m_families.size() < limit)
+        m_families.push_back(split(index));
+    if (m_families.empty())
+      return;
+    m_added.clear();
+    expand(m_families);
+    m_fresh.swap(m_added);
   }
 }
 
@@ -191,12 +227,13 @@ void AdaptiveProduct::finish() {
   for (const Square& s : m_squares) {
     if (s.slot < 0)
       continue;
+    const float area = power_of_two(-2 * s.level);
     ProductNode& parent = m_product.m_nodes[static_cast<std::size_t>(s.slot / 4)];
-    const float area = std::ldexp(1.0F, -2 * s.level);
     parent.weights[s.slot % 4] = s.weight / area;
     parent.child[s.slot % 4] = ~static_cast<std::int32_t>(m_product.m_leaves.size());
-    m_product.m_leaves.push_back({&m_light, s.node, s.light, s.weights});
-    integral += s.product * area;
+    const Float4 weights = larger(s.reflectance, m_floor) * luminance_lanes;
+    m_product.m_leaves.push_back({s.light, weights, s.node});
+    integral += s.light * s.reflectance * area;
   }
   m_product.m_integral = to_rgb(integral);
   m_product.sum_upwards(m_parent_slots);

@@ -20,16 +20,19 @@ void use_default_mode(int descriptor) {
   ::fchmod(descriptor, 0666 & ~mask);
 }
 
-bool is_directory(const std::string& path) {
+/// A rename would put a file in the place of a device or FIFO; those must stay.
+void require_replaceable(const std::string& path) {
   struct stat status = {};
-  return ::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+  if (::stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode))
+    return;
+  throw_output_error(path, S_ISDIR(status.st_mode) ? "is a directory, a file name is needed"
+                                                   : "exists and is no regular file");
 }
 
 } // namespace
 
 OutputFile::OutputFile(const std::string& path) : m_path(path) {
-  if (is_directory(path))
-    throw_output_error(path, "is a directory, a file name is needed");
+  require_replaceable(path);
   std::string name = path + ".tmp.XXXXXX";
   m_descriptor = ::mkostemp(name.data(), O_CLOEXEC);
   if (m_descriptor < 0)

@@ -19,7 +19,7 @@ Descent ProductTree::sample(float u1, float u2) const {
     const ProductNode& node = m_nodes[static_cast<std::size_t>(next)];
     next = node.child[descend(d, node.weights)];
   }
-  descend_tree(d, m_leaves[static_cast<std::size_t>(~next)]);
+  descend_tree(d, density(~next));
   return d;
 }
 
@@ -35,7 +35,7 @@ float ProductTree::pdf(float u, float v) const {
       return 0;
     next = node.child[q];
   }
-  follow_tree(d, m_leaves[static_cast<std::size_t>(~next)], u, v);
+  follow_tree(d, density(~next), u, v);
   return d.pdf;
 }
 

@@ -173,4 +173,8 @@ Pyramid::Pyramid(std::span<const TreeView> trees)
   }
 }
 
+Float4 Pyramid::lookup(int entry, int level, float u, float v) const {
+  return lookup(entry, places(level, Float4{u}, Float4{v}), 0);
+}
+
 } // namespace haarlight::wavelet

@@ -58,12 +58,13 @@ struct TableProduct::Builder {
     integral += area * square.light_mean * square.reflectance_mean;
     product.m_nodes[static_cast<std::size_t>(slot / 4)].weights[slot % 4] =
         std::max(lane_sum(square.light_mean * weights), 0.0F);
-    product.m_leaves.push_back({&light, square.light_node, square.light_mean, weights});
+    product.m_leaves.push_back({square.light_mean, weights, square.light_node});
     return ~static_cast<std::int32_t>(product.m_leaves.size() - 1);
   }
 
   /// The root is always a node, even if the reflectance is constant.
   void run() {
+    product.m_light = light;
     split({to_lanes(light.mean), to_lanes(reflectance.mean), light.root(), reflectance.root()}, -1,
           1.0F);
     product.m_integral = to_rgb(integral);

@@ -100,7 +100,7 @@ LightDescription read_light(const SceneNode& node, const Folder& folder) {
 }
 
 Rgb read_albedo(const SceneNode& node) {
-  const Rgb albedo = node.vector().array();
+  Rgb albedo = node.vector().array();
   if ((albedo < 0).any() || (albedo > 1).any())
     node.fail("must hold albedos between 0 and 1");
   return albedo;

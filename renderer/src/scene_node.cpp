@@ -173,14 +173,14 @@ Vec3 SceneNode::vector() const {
 }
 
 Vec3 SceneNode::direction() const {
-  const Vec3 v = vector();
+  Vec3 v = vector();
   if (v == Vec3::Zero())
     fail("must not be the zero vector");
   return v;
 }
 
 std::string SceneNode::choice(std::string_view what, const Names& known) const {
-  const std::string value = text();
+  std::string value = text();
   if (std::find(known.begin(), known.end(), value) == known.end())
     fail_unknown(what, value, known);
   return value;

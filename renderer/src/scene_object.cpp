@@ -25,7 +25,7 @@ Shape read_box(const SceneNode& node) {
 
 /// Two points that must differ: the ends of a cylinder or a cone.
 Vec3 read_other_end(const SceneNode& node, const char* key, const Vec3& base) {
-  const Vec3 end = node.at(key).vector();
+  Vec3 end = node.at(key).vector();
   if (end == base)
     node.at(key).fail("must not be the same point as base");
   return end;

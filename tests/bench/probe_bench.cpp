@@ -8,16 +8,17 @@
 #include <wavelet/parallel.h>
 #include <wavelet/sphere_map.h>
 
-#include <chrono>
 #include <cstdio>
+#include <ctime>
 
 using namespace haarlight;
 using namespace haarlight::probe;
 
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+/// Processor time, which other programs on the machine do not lengthen.
+double seconds_since(std::clock_t start) {
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 /// Points that fill the square evenly.
@@ -29,7 +30,7 @@ Vec2 spread_point(int i) {
 
 template <class Work>
 void report(const char* what, double count, const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = std::clock();
   const double result = work();
   const double seconds = seconds_since(start);
   std::printf("%-44s %9.3f ms %9.2f ns each (check %g)\n", what, 1e3 * seconds,
@@ -51,7 +52,7 @@ void time_look_ups(const Probe& probe) {
 
 void time_sampling(const Probe& probe) {
   constexpr int count = 4'000'000;
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = std::clock();
   const LightDistribution light(probe);
   std::printf("%-44s %9.3f ms\n", "LightDistribution made", 1e3 * seconds_since(start));
   std::vector<Vec2> points;

@@ -71,7 +71,7 @@ void expose(image::Picture& picture) {
                     static_cast<double>(luminance(Eigen::Map<const Rgb>(picture.rgb.data() + i))));
   if (sum <= 0)
     return;
-  const auto gain = static_cast<float>(0.18 * static_cast<double>(picture.rgb.size() / 3) / sum);
+  const auto gain = static_cast<float>(0.06 * static_cast<double>(picture.rgb.size()) / sum);
   for (float& value : picture.rgb)
     value *= gain;
 }

@@ -128,10 +128,6 @@ int write_haar_set(const Tool& tool, const wavelet::MapSource& source, const Map
 
 } // namespace
 
-bool has_extension(const std::string& path, const std::string& extension) {
-  return path.size() > extension.size() && path.ends_with(extension);
-}
-
 void add_compress_options(Tool& tool, MapOutput& output) {
   CompressOptions& options = output.compression;
   tool.choice(options.threshold.criterion, "--criterion",

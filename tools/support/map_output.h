@@ -36,7 +36,4 @@ void add_map_output(Tool& tool, MapOutput& output);
 int write_map_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
                   Report report = {});
 
-/// True if the path ends so, as in ".haar".
-bool has_extension(const std::string& path, const std::string& extension);
-
 } // namespace haarlight::tool

@@ -62,6 +62,10 @@ std::vector<double> numbers_of(const std::string& word, std::size_t count, doubl
   return numbers;
 }
 
+bool has_extension(const std::string& path, const std::string& extension) {
+  return path.size() > extension.size() && path.ends_with(extension);
+}
+
 std::string short_text(double number) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.6g", number);

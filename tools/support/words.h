@@ -13,6 +13,9 @@ std::uint64_t natural_of(const std::string& word);
 double number_of(const std::string& word, double low, double high);
 std::vector<double> numbers_of(const std::string& word, std::size_t count, double low, double high);
 
+/// True if there is a name and it ends so, as in ".haar".
+bool has_extension(const std::string& path, const std::string& extension);
+
 /// Six significant digits, as in 0.00123 or 1.5e-07.
 std::string short_text(double number);
 /// Enough digits to read the same number back.

@@ -1,9 +1,9 @@
 #pragma once
 // Isotropic analytic reflectance models with the parameters their papers publish.
 //
-// Every model gives f_r in sr⁻¹, without cosine, for unit vectors in the local frame (z = normal), and
-// 0 where wi or wo is not above the horizon. Colours are linear RGB. `diffuse` adds a Lambertian
-// part, diffuse/π; nothing scales it down, so diffuse + specular should stay below one.
+// Every model gives f_r in sr⁻¹, without cosine, for unit vectors in the local frame (z = normal),
+// and 0 where wi or wo is not above the horizon. Colours are linear RGB. `diffuse` adds a
+// Lambertian part, diffuse/π; nothing scales it down, so diffuse + specular should stay below one.
 
 #include <wavelet/geometry.h>
 
@@ -48,19 +48,20 @@ struct Ward {
   Rgb evaluate(const Angles& angles) const;
 };
 
-/// Lafortune et al. 1997, one isotropic lobe: max(0, C_xy (x_i x_o + y_i y_o) + C_z z_i z_o)^n times
-/// (n + 2) / (2π max(|C_xy|, |C_z|)^n), so that `specular` is the albedo at normal incidence of the
-/// plain mirror lobe C_xy = −C_z.
+/// Lafortune et al. 1997, one isotropic lobe: max(0, C_xy (x_i x_o + y_i y_o) + C_z z_i z_o)^n
+/// times (n + 2) / (2π max(|C_xy|, |C_z|)^n), so that `specular` is the albedo at normal incidence
+/// of the plain mirror lobe C_xy = −C_z.
 struct Lafortune {
   Rgb diffuse = Rgb::Zero();
   Rgb specular = Rgb::Constant(0.5F);
   double exponent = 40; ///< n > 0
-  double c_xy = -1;     ///< −C_z: mirror lobe; larger |C_xy|: off-specular; positive: retro-reflecting
+  double c_xy = -1; ///< −C_z: mirror lobe; larger |C_xy|: off-specular; positive: retro-reflecting
   double c_z = 1;
   Rgb evaluate(const Angles& angles) const;
 };
 
-/// Ashikhmin & Shirley 2000 with n_u = n_v = n; their own diffuse part, coupled to the specular one.
+/// Ashikhmin & Shirley 2000 with n_u = n_v = n; their own diffuse part, coupled to the specular
+/// one.
 struct AshikhminShirley {
   Rgb diffuse = Rgb::Zero();           ///< R_d
   Rgb specular = Rgb::Constant(0.05F); ///< R_s, reflectance at normal incidence

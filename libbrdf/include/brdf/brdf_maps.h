@@ -1,13 +1,14 @@
 #pragma once
 // A measured BRDF resampled into the set of maps that products are made of.
 //
-// Frame of a map: z = the mirror direction ω_r; the normal is n = (sin θ_r cos φ, sin θ_r sin φ, cos θ_r);
-// ω_o is the mirror image of z about n. The pixel at local direction ω holds
-// f_r(ω_o, ω) · max(0, n·ω) in sr⁻¹ (or f_r alone), averaged over the pixel and over the entry's cell:
-// column c covers θ_r ∈ [c, c + 1)·(π/2)/theta and row r the rolls φ ∈ [r, r + 1)·2π/roll. With roll = 1
-// the row is φ = 0 exactly: other rolls are turns of the frame, made when the set is used.
+// Frame of a map: z = the mirror direction ω_r; the normal is n = (sin θ_r cos φ, sin θ_r sin φ,
+// cos θ_r); ω_o is the mirror image of z about n. The pixel at local direction ω holds f_r(ω_o, ω)
+// · max(0, n·ω) in sr⁻¹ (or f_r alone), averaged over the pixel and over the entry's cell: column c
+// covers θ_r ∈ [c, c + 1)·(π/2)/theta and row r the rolls φ ∈ [r, r + 1)·2π/roll. With roll = 1 the
+// row is φ = 0 exactly: other rolls are turns of the frame, made when the set is used.
 //
-// Pixels are sampled more finely where the table's bins of θ_h are finer, so that no lobe is missed.
+// Pixels are sampled more finely where the table's bins of θ_h are finer, so that no lobe is
+// missed.
 
 #include <brdf/measured_brdf.h>
 
@@ -24,8 +25,8 @@ struct BrdfMapOptions {
   int size = 0;   ///< pixels along a side, a power of two; 0 = 512 for roll 1, else 128
   int theta = 64; ///< cells of θ_r
   int roll = 1;   ///< cells of φ over the full circle; 1 = the set without rolls
-  /// Which rows to store. Unset: Rotations if roll > 1 is a multiple of 4, else None. Mirrors needs a
-  /// multiple of 8, and averages the table with its bilateral mirror image.
+  /// Which rows to store. Unset: Rotations if roll > 1 is a multiple of 4, else None. Mirrors needs
+  /// a multiple of 8, and averages the table with its bilateral mirror image.
   std::optional<wavelet::Fold> fold;
   int supersample = 2; ///< samples along a pixel's side at least; rounded up to a power of two ≥ 2
   bool cosine = true;  ///< include max(0, n·ω)

@@ -17,14 +17,16 @@
 namespace haarlight::brdf {
 
 /// The three angles as points (x, y) of any length; the y of θ_h and θ_d are ≥ 0.
-template <class F> struct HalfDifference {
+template <class F>
+struct HalfDifference {
   F theta_h_y, theta_h_x;
   F theta_d_y, theta_d_x;
   F phi_d_y, phi_d_x;
 };
 
 /// @param wi, wo unit vectors as three components each
-template <class F> HalfDifference<F> half_difference(const F (&wi)[3], const F (&wo)[3]) {
+template <class F>
+HalfDifference<F> half_difference(const F (&wi)[3], const F (&wo)[3]) {
   const F hx = wi[0] + wo[0];
   const F hy = wi[1] + wo[1];
   const F hz = wi[2] + wo[2];
@@ -33,27 +35,33 @@ template <class F> HalfDifference<F> half_difference(const F (&wi)[3], const F (
   const F ez = wi[2] - wo[2];
   const F across = hx * hx + hy * hy;
   const F h_length = square_root(across + hz * hz);
-  return {square_root(across), hz,
-          square_root(ex * ex + ey * ey + ez * ez), h_length,
-          hx * ey - hy * ex, -h_length * ez};
+  return {square_root(across),
+          hz,
+          square_root(ex * ex + ey * ey + ez * ez),
+          h_length,
+          hx * ey - hy * ex,
+          -h_length * ez};
 }
 
 /// Continuous table coordinates: bin k covers [k, k + 1), its centre is k + ½.
-template <class F> struct TablePosition {
+template <class F>
+struct TablePosition {
   F theta_h; ///< in [0, 90], proportional to the square root of the angle
   F theta_d; ///< in [0, 90]
   F phi_d;   ///< in [0, 180] with the reciprocity fold, else in [0, 360]
 };
 
 /// Turns the φ_d point by half a turn where that brings it to y ≥ 0: swaps wi and wo.
-template <class F> void fold_reciprocity(HalfDifference<F>& angles) {
+template <class F>
+void fold_reciprocity(HalfDifference<F>& angles) {
   const F zero = broadcast<F>(0);
   angles.phi_d_x = select(angles.phi_d_y < zero, -angles.phi_d_x, angles.phi_d_x);
   angles.phi_d_y = absolute(angles.phi_d_y);
 }
 
 /// The position from the three angles in radians; φ_d in (−π, π].
-template <class F> TablePosition<F> table_position(F theta_h, F theta_d, F phi_d) {
+template <class F>
+TablePosition<F> table_position(F theta_h, F theta_d, F phi_d) {
   const F zero = broadcast<F>(0);
   const F turned = select(phi_d < zero, phi_d + 2.0F * pi, phi_d);
   return {90.0F * square_root(theta_h * (2.0F / pi)), theta_d * (180.0F / pi),
@@ -61,7 +69,8 @@ template <class F> TablePosition<F> table_position(F theta_h, F theta_d, F phi_d
 }
 
 /// @param folded whether the table has the reciprocity fold (180 bins of φ_d)
-template <class F> TablePosition<F> table_position(HalfDifference<F> angles, bool folded) {
+template <class F>
+TablePosition<F> table_position(HalfDifference<F> angles, bool folded) {
   if (folded)
     fold_reciprocity(angles);
   return table_position(arctangent(angles.theta_h_y, angles.theta_h_x),
@@ -73,9 +82,8 @@ template <class F> TablePosition<F> table_position(HalfDifference<F> angles, boo
 inline TablePosition<float> table_position_of_one(HalfDifference<float> angles, bool folded) {
   if (folded)
     fold_reciprocity(angles);
-  const Float4 angle =
-      arctangent(Float4{angles.theta_h_y, angles.theta_d_y, angles.phi_d_y, 0.0F},
-                 Float4{angles.theta_h_x, angles.theta_d_x, angles.phi_d_x, 1.0F});
+  const Float4 angle = arctangent(Float4{angles.theta_h_y, angles.theta_d_y, angles.phi_d_y, 0.0F},
+                                  Float4{angles.theta_h_x, angles.theta_d_x, angles.phi_d_x, 1.0F});
   return table_position(angle[0], angle[1], angle[2]);
 }
 

@@ -71,7 +71,8 @@ public:
   /// f_r of many half and difference angles, horizon or not.
   void evaluate(const HalfDifferenceBatch& batch, Float4* values) const;
 
-  /// f_r at a table position, horizon or not: R, G, B in sr⁻¹ and 1; all 0 if no cell near is valid.
+  /// f_r at a table position, horizon or not: R, G, B in sr⁻¹ and 1; all 0 if no cell near is
+  /// valid.
   Float4 at(const TablePosition<float>& place) const;
 
   /// One cell: R, G, B in sr⁻¹ and 1, or all 0 if it is invalid.
@@ -88,13 +89,13 @@ public:
   /// Hash of the raw values, 16 hexadecimal digits.
   const std::string& hash() const { return m_hash; }
 
-  /// The same table averaged over its bilateral mirror images, f(φ_d) and f(π − φ_d); where only one
-  /// of the two is valid, it alone.
+  /// The same table averaged over its bilateral mirror images, f(φ_d) and f(π − φ_d); where only
+  /// one of the two is valid, it alone.
   MeasuredBrdf symmetrised() const;
 
 private:
-  /// One cell: the colour is zero where it is invalid, so that Σ w·rgb / Σ w·valid interpolates over
-  /// valid cells only.
+  /// One cell: the colour is zero where it is invalid, so that Σ w·rgb / Σ w·valid interpolates
+  /// over valid cells only.
   struct Cell {
     Float4 value;
   };

@@ -1,10 +1,11 @@
 #pragma once
-// The file format of the MERL measurements (Matusik et al. 2003, "A data-driven reflectance model").
+// The file format of the MERL measurements (Matusik et al. 2003, "A data-driven reflectance
+// model").
 //
 // Little-endian: int32[3] bins of θ_h, θ_d, φ_d; then three planes R, G, B of float64 values, index
-// φ_d + n_φ·(θ_d + 90·θ_h). A value is f_r / scale, in sr⁻¹, without cosine; it stands for the centre
-// of its bin. Negative values mark invalid cells (a direction below the horizon).
-// Bin k of θ_h spans π/2·[(k/90)², ((k+1)/90)²]; θ_d has 90 equal bins of [0, π/2]; φ_d 180 of [0, π)
+// φ_d + n_φ·(θ_d + 90·θ_h). A value is f_r / scale, in sr⁻¹, without cosine; it stands for the
+// centre of its bin. Negative values mark invalid cells (a direction below the horizon). Bin k of
+// θ_h spans π/2·[(k/90)², ((k+1)/90)²]; θ_d has 90 equal bins of [0, π/2]; φ_d 180 of [0, π)
 // (reciprocity folds the rest) or 360 of [0, 2π). Very old files with linear θ_h look the same and
 // cannot be told apart.
 
@@ -44,7 +45,8 @@ struct MerlTable {
   }
 };
 
-/// @throws Error(Input) if the file is unreadable, has other dimensions (each wrong one is named) or
+/// @throws Error(Input) if the file is unreadable, has other dimensions (each wrong one is named)
+/// or
 ///         not exactly 12 + 24·n bytes, or holds NaN, infinity or values beyond 1e30
 ///         (with the byte offset)
 MerlTable read_merl(const std::string& path);

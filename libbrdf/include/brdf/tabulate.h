@@ -13,7 +13,8 @@ struct TabulateOptions {
   std::uint64_t seed = 1; ///< of the noise; a cell's noise depends on seed, cell and channel only
 };
 
-/// Cells whose min(cos θ_i, cos θ_o) at the centre is not above this are invalid, as in the real data.
+/// Cells whose min(cos θ_i, cos θ_o) at the centre is not above this are invalid, as in the real
+/// data.
 inline constexpr double lowest_valid_cosine = -0.061;
 
 /// Values at bin centres; invalid cells hold −1. Centres a little below the horizon are valid and

@@ -9,6 +9,8 @@
 
 namespace haarlight::probe {
 
+struct PixelRectangle;
+
 /// A direction towards the light and the density it was drawn with.
 struct LightSample {
   Vec3 direction; ///< unit vector in world axes
@@ -40,27 +42,30 @@ private:
     std::uint32_t width = 0; ///< of the cdf's step, in units of 1/one
     float fraction = 0;      ///< of the way through it
   };
+  struct Place {
+    float u = 0;
+    float v = 0;
+    float area = 0; ///< in (u, v), that the pixel's probability is spread over
+  };
   /// Cumulative distributions are integers up to `one`, so that the density is exactly that of the
   /// sampling, however small a pixel's share.
   static constexpr std::uint32_t one = std::uint32_t{1} << 31U;
 
   static void accumulate(const std::vector<double>& weights, std::uint32_t* cdf);
-  void make_guide(const std::uint32_t* cdf, std::uint32_t* guide) const;
-  static Step find(const std::uint32_t* begin, const std::uint32_t* end, const std::uint32_t* cdf,
-                   double u);
-  Step find_column(int row, float u) const;
-  Vec2 point_in_pixel(int x, int y, const Vec2& u, float& area) const;
-  float pixel_area(int x, int y, const Vec2& uv) const;
-  float density(std::uint32_t row_width, std::uint32_t column_width, float area,
-                const Vec2& uv) const;
+  static void make_guide(const std::uint32_t* cdf, int count, std::uint32_t* guide);
+  static Step find(const std::uint32_t* cdf, const std::uint32_t* guide, int count, float u);
+  Place place_in_pixel(const Step& column, const Step& row) const;
+  static Place place_at_rim(const PixelRectangle& pixel, float s, float t);
+  float pixel_area(int x, int y, float u) const;
+  static float density(std::uint32_t row_width, std::uint32_t column_width, float solid_angle);
 
   Mapping m_mapping;
   int m_width;
   int m_height;
-  int m_guides;                         ///< entries of the guide of one row
-  std::vector<std::uint32_t> m_rows;    ///< height + 1
-  std::vector<std::uint32_t> m_columns; ///< width + 1 for each row
-  std::vector<std::uint32_t> m_guide; ///< where in a row's cdf each of m_guides equal parts begins
+  std::vector<std::uint32_t> m_rows;         ///< cdf, height + 1
+  std::vector<std::uint32_t> m_row_guide;    ///< height
+  std::vector<std::uint32_t> m_columns;      ///< cdfs, width + 1 for each row
+  std::vector<std::uint32_t> m_column_guide; ///< width for each row
 };
 
 } // namespace haarlight::probe

@@ -2,6 +2,7 @@
 // Four floats side by side (one SSE register), and the few functions that let one template serve
 // both a float and four of them with bit-identical results.
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -16,6 +17,23 @@ inline Float4 select(Int4 condition, Float4 yes, Float4 no) { return condition ?
 inline float square_root(float x) { return std::sqrt(x); }
 inline Float4 square_root(Float4 x) {
   return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+}
+
+/// Four rows of four to four columns.
+inline void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
+  const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  const Float4 ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Float4 cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Float4 cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+/// 2^exponent, −126 ≤ exponent ≤ 127.
+inline float power_of_two(int exponent) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(exponent + 127) << 23U);
 }
 
 template <class F> F broadcast(float x) { return F{} + x; }

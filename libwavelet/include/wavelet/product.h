@@ -11,6 +11,7 @@
 #include <wavelet/symmetry.h>
 #include <wavelet/tree.h>
 
+#include <span>
 #include <vector>
 
 namespace haarlight::wavelet {
@@ -20,6 +21,13 @@ namespace haarlight::wavelet {
 struct ProductNode {
   Float4 weights = {};
   std::int32_t child[4] = {-1, -1, -1, -1};
+};
+
+/// A square on which the reflectance counts as constant: the light tree's share of it.
+struct ProductLeaf {
+  Float4 mean;    ///< of the light, lanes R, G, B, 0
+  Float4 weights; ///< luminance weights times reflectance
+  std::uint32_t node;
 };
 
 /// A product ready for sampling. Points are those of the light's square; measures per unit square.
@@ -33,7 +41,7 @@ public:
 
   std::size_t leaf_count() const { return m_leaves.size(); }
   std::size_t bytes() const {
-    return m_nodes.size() * sizeof(ProductNode) + m_leaves.size() * sizeof(TreeDensity);
+    return m_nodes.size() * sizeof(ProductNode) + m_leaves.size() * sizeof(ProductLeaf);
   }
 
   /// Draws a point of the square; result.pdf is its density per unit square.
@@ -50,8 +58,14 @@ private:
   /// Turns node weights, given at leaves, into averages all the way up.
   void sum_upwards(const std::vector<std::int32_t>& parent_slots);
 
+  TreeDensity density(std::int32_t leaf) const {
+    const ProductLeaf& l = m_leaves[static_cast<std::size_t>(leaf)];
+    return {&m_light, l.node, l.mean, l.weights};
+  }
+
+  TreeView m_light;
   std::vector<ProductNode> m_nodes;
-  std::vector<TreeDensity> m_leaves;
+  std::vector<ProductLeaf> m_leaves;
   Rgb m_integral = Rgb::Zero();
 };
 
@@ -77,7 +91,7 @@ struct AdaptiveOptions {
 /// point evaluations; averages overlook no lobe. Reused from point to point, it allocates nothing.
 class AdaptiveProduct {
 public:
-  /// @param light a tree in the frame that reflections are given in; must outlive this
+  /// @param light a tree in the frame that reflections are given in; its arrays must outlive this
   explicit AdaptiveProduct(const TreeView& light);
 
   /// The product at one shading point; valid until the next call.
@@ -87,29 +101,49 @@ private:
   static constexpr int start_level = 3;
 
   struct Square {
-    Float4 light;   ///< average, lanes R, G, B, 0
-    Float4 weights; ///< luminance weights times the floored reflectance
-    Float4 product; ///< light times reflectance
+    Float4 light;       ///< average, lanes R, G, B, 0
+    Float4 reflectance; ///< average, and its luminance's deviation in lane 3
     std::uint32_t node;
     std::int32_t slot; ///< 4 × its parent's product node + quadrant
-    int level, x, y;
+    std::uint16_t x, y;
+    std::int32_t level;
     float weight; ///< share in the total: area × density
     float error;  ///< what of the variance it leaves
   };
 
-  struct Family { ///< a parent square about to have its four quadrants looked at
+  /// A square about to be replaced by its four quadrants.
+  struct Family {
     Float4 light;
     std::uint32_t node;
     std::int32_t product_node;
     int level, x, y;
+    std::uint32_t place; ///< of the square in m_squares, taken over by a quadrant, or no_place
   };
 
+  /// The four quadrants of a family.
+  struct Quadrants {
+    Pyramid::Places places;
+    Int4 visible; ///< whether any of the quadrant lies above the horizon
+    std::array<Float4, 4> light;
+    std::array<Float4, 4> reflectance;
+    Float4 weight;
+    Float4 error;
+  };
+
+  static constexpr std::uint32_t no_place = 0xffffffffU;
+  /// Families are worked on this many at a time, stage by stage: a stage's steps are independent of each
+  /// other, so that the processor overlaps them.
+  static constexpr std::size_t batch_size = 16;
+
   void start();
-  void look_up(const Family& family, std::array<Float4, 4>& reflectance, Int4& visible) const;
-  void add_children(const Family& family, std::size_t reuse);
-  Square make_square(const Family& family, unsigned q, Float4 light, Float4 reflectance) const;
-  void split(std::size_t index);
+  void place(const Family& family, Quadrants& quadrants) const;
+  void look_up(Quadrants& quadrants) const;
+  void weigh(const Family& family, Quadrants& quadrants) const;
+  void add(const Family& family, const Quadrants& quadrants);
+  void expand(std::span<const Family> families);
+  Family split(std::uint32_t index);
   void refine(const AdaptiveOptions& options);
+  void refine_above(float threshold, std::size_t limit);
   void finish();
 
   TreeView m_light;
@@ -117,6 +151,9 @@ private:
   RotatedReflectance m_reflectance;
   Float4 m_floor = {};
   std::vector<Square> m_squares;
+  std::vector<std::uint32_t> m_fresh;  ///< squares not yet held against the pass's threshold
+  std::vector<std::uint32_t> m_added;  ///< squares made meanwhile
+  std::vector<Family> m_families;
   std::vector<std::int32_t> m_parent_slots;
   double m_weight = 0;
   double m_error = 0;
@@ -128,7 +165,7 @@ private:
 /// (Table 4) finds through coefficient sums.
 class TableProduct {
 public:
-  /// @param light       must outlive the result
+  /// @param light       its arrays must outlive the result
   /// @param reflectance seen through `symmetry`
   static ProductTree build(const TreeView& light, const TreeView& reflectance,
                            const SquareSymmetry& symmetry);

@@ -37,12 +37,26 @@ public:
   /// @param level 0 … levels(); @param u,v in [0, 1]
   Float4 lookup(int entry, int level, float u, float v) const;
 
+  /// Where four points lie in the grids of a level, for look-ups of them in several entries.
+  struct Places {
+    int level;
+    Float4 u, v;
+    Int4 page, texel;
+    Float4 fx, fy;
+  };
+  Places places(int level, Float4 u, Float4 v) const;
+
+  /// lookup() of one of four places.
+  Float4 lookup(int entry, const Places& places, int lane) const;
+
 private:
   static constexpr int tile_bits = 3;
   static constexpr int tile_side = 1 << tile_bits;
   static constexpr int stored_side = tile_side + 2; ///< with one square of each neighbour
   static constexpr std::size_t tile_values = 4ULL * stored_side * stored_side;
   static constexpr std::uint32_t absent = 0x80000000U; ///< low bits: the finest level that exists
+
+  Float4 interpolate(std::uint32_t page, int texel, float fx, float fy) const;
 
   static int tiles_log(int level) { return std::max(level - tile_bits, 0); }
 
@@ -75,32 +89,42 @@ inline Float4 blend_texels(const std::uint16_t* texels, float f) {
 
 } // namespace detail
 
-inline Float4 Pyramid::lookup(int entry, int level, float u, float v) const {
-  const std::uint32_t* pages = m_pages.data() + static_cast<std::size_t>(entry) * m_pages_per_entry;
-  while (true) {
-    const float scale = static_cast<float>(1 << level);
-    const float x = u * scale + 0.5F;
-    const float y = v * scale + 0.5F;
-    const int ix = static_cast<int>(x);
-    const int iy = static_cast<int>(y);
-    const int log = tiles_log(level);
-    const int tx = std::min(ix >> tile_bits, (1 << log) - 1);
-    const int ty = std::min(iy >> tile_bits, (1 << log) - 1);
-    const std::uint32_t page =
-        pages[m_level_offset[static_cast<std::size_t>(level)] + static_cast<std::uint32_t>((ty << log) + tx)];
-    if ((page & absent) != 0) {
-      level = static_cast<int>(page & 15U);
-      continue;
-    }
-    const int column = ix - (tx << tile_bits);
-    const int row = iy - (ty << tile_bits);
-    const std::uint16_t* texel = m_texels.data() + page * tile_values +
-                                 4 * static_cast<std::size_t>(row * stored_side + column);
-    const float fx = x - static_cast<float>(ix);
-    const Float4 upper = detail::blend_texels(texel, fx);
-    const Float4 lower = detail::blend_texels(texel + 4 * stored_side, fx);
-    return upper + (lower - upper) * (y - static_cast<float>(iy));
-  }
+inline Pyramid::Places Pyramid::places(int level, Float4 u, Float4 v) const {
+  const float scale = power_of_two(level);
+  const Float4 x = u * scale + 0.5F;
+  const Float4 y = v * scale + 0.5F;
+  const Int4 ix = __builtin_convertvector(x, Int4);
+  const Int4 iy = __builtin_convertvector(y, Int4);
+  const int log = tiles_log(level);
+  const Int4 last = Int4{} + ((1 << log) - 1);
+  const Int4 tile_x = ix >> tile_bits;
+  const Int4 tile_y = iy >> tile_bits;
+  const Int4 tx = tile_x < last ? tile_x : last;
+  const Int4 ty = tile_y < last ? tile_y : last;
+  Places result;
+  result.level = level;
+  result.u = u;
+  result.v = v;
+  result.page = (ty << log) + tx + static_cast<int>(m_level_offset[static_cast<std::size_t>(level)]);
+  result.texel = 4 * (stored_side * (iy - (ty << tile_bits)) + ix - (tx << tile_bits));
+  result.fx = x - __builtin_convertvector(ix, Float4);
+  result.fy = y - __builtin_convertvector(iy, Float4);
+  return result;
+}
+
+inline Float4 Pyramid::interpolate(std::uint32_t page, int texel, float fx, float fy) const {
+  const std::uint16_t* p = m_texels.data() + page * tile_values + texel;
+  const Float4 upper = detail::blend_texels(p, fx);
+  const Float4 lower = detail::blend_texels(p + 4 * stored_side, fx);
+  return upper + (lower - upper) * fy;
+}
+
+inline Float4 Pyramid::lookup(int entry, const Places& p, int lane) const {
+  const std::uint32_t page =
+      m_pages[static_cast<std::size_t>(entry) * m_pages_per_entry + static_cast<std::size_t>(p.page[lane])];
+  if ((page & absent) != 0)
+    return lookup(entry, static_cast<int>(page & 15U), p.u[lane], p.v[lane]);
+  return interpolate(page, p.texel[lane], p.fx[lane], p.fy[lane]);
 }
 
 } // namespace haarlight::wavelet

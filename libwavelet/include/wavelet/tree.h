@@ -11,7 +11,6 @@
 #include <wavelet/map_set.h>
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -47,6 +46,15 @@ struct Details {
   }
 };
 
+namespace detail {
+
+/// Number of bits set in a value below 16; a population count is a function call on plain x86-64.
+constexpr std::uint32_t bits_of_nibble(std::uint32_t nibble) {
+  return static_cast<std::uint32_t>(0x4332322132212110ULL >> (4U * nibble)) & 15U;
+}
+
+} // namespace detail
+
 /// "No such node": the function is constant over the square.
 inline constexpr std::uint32_t no_node = 0xffffffffU;
 
@@ -70,8 +78,7 @@ struct TreeView {
     const std::uint32_t link = links[node];
     if (((link >> q) & 1U) == 0)
       return no_node;
-    return (link >> 4U) +
-           static_cast<std::uint32_t>(std::popcount(link & ((1U << q) - 1U)));
+    return (link >> 4U) + detail::bits_of_nibble(link & ((1U << q) - 1U));
   }
 
   /// Differences of an existing node.

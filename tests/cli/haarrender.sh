@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# haarrender: every sampler and estimator, and every kind of bad input.
+source "$(dirname "$0")/lib.sh" "$1"
+
+"$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.05 -q -o brdf.binary >/dev/null
+"$bin/brdf2maps" brdf.binary -q --size 64 --theta 16 --conservation-tolerance 1 -o brdf.haar >/dev/null
+"$bin/brdf2maps" brdf.binary -q --size 32 --theta 8 --roll 16 --conservation-tolerance 1 -o brdf.table.haar >/dev/null
+"$bin/probesynth" --scene studio --size 64 -q -o probe.hdr >/dev/null
+"$bin/probe2maps" probe.hdr -q --size 64 -o probe.haar >/dev/null
+"$bin/probe2maps" probe.hdr -q --size 32 --orientations 8 -o probe.table.haar >/dev/null
+inputs=(brdf.binary brdf.haar brdf.table.haar probe.hdr probe.haar probe.table.haar)
+
+cat >scene.json <<'END'
+{ "film": {"width": 24, "height": 16},
+  "camera": {"type": "perspective", "from": [0, 0.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 30},
+  "light": {"probe": "probe.hdr", "haar": "probe.haar", "table": "probe.table.haar"},
+  "materials": {"measured": {"brdf": "brdf.binary", "haar": "brdf.haar", "table": "brdf.table.haar"},
+                "floor": {"lambert": [0.5, 0.5, 0.5]}},
+  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "measured"},
+              {"type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], "material": "floor"}] }
+END
+
+# the work
+for sampler in product product-table light brdf mis; do
+  expect 0 haarrender scene.json -o $sampler.exr --sampler $sampler --spp 4
+  check "$sampler.exr is a picture" "$bin/haarsheet" $sampler.exr -o sheet.png
+  rm $sampler.exr sheet.png
+done
+expect 0 haarrender scene.json -o a.exr --spp 4 --threads 1
+expect 0 haarrender scene.json -o b.exr --spp 4 --threads 2 --json
+same a.exr b.exr
+mkdir elsewhere
+(cd elsewhere && "$bin/haarrender" ../scene.json -o b.exr --spp 4 >/dev/null)
+same a.exr elsewhere/b.exr
+rm -r elsewhere
+expect 0 haarrender scene.json -o b.exr --spp 4 --seed 1
+cmp -s a.exr b.exr && fail "--seed changes nothing"
+for estimator in bidirectional ratio; do
+  expect 0 haarrender scene.json -o b.exr --spp 2 --estimator $estimator
+done
+expect 0 haarrender scene.json -o b.exr --spp 2 --points random --brdf-lookup nearest --probe-lookup bilinear
+expect 0 haarrender scene.json -o b.exr --png b.png --size 8x6 --spp 1 --time-limit 0.1
+check "b.png is a picture" "$bin/haarsheet" b.png -o sheet.png
+rm a.exr b.exr b.png sheet.png
+
+# usage
+expect 2 haarrender scene.json
+expect 2 haarrender scene.json -o x.exr --sampler magic
+expect 2 haarrender scene.json -o x.exr --spp 0
+for size in 8 8x 0x8 -1x8 axb 99999999x99999999; do
+  expect 2 haarrender scene.json -o x.exr --size $size
+done
+
+# scenes that are wrong: exit code 3, and the message names what is
+refuses_bad_input x.exr haarrender @ -o x.exr
+wrong() {
+  sed "$1" scene.json >wrong.json
+  expect 3 haarrender wrong.json -o x.exr
+  says "$2"
+}
+wrong 's/"fov"/"fow"/' fov
+wrong 's/probe.hdr/missing.hdr/' missing.hdr
+wrong 's/brdf.haar/missing.haar/' missing.haar
+wrong 's/"material": "floor"/"material": "flor"/' floor
+wrong 's/"radius": 1/"radius": -1/' radius
+wrong 's/probe.hdr/scene.json/' scene.json
+wrong 's/"brdf": "brdf.binary"/"brdf": "probe.hdr"/' probe.hdr
+wrong 's/"haar": "brdf.haar"/"haar": "probe.haar"/' probe.haar
+wrong 's/"haar": "probe.haar"/"haar": "brdf.haar"/' brdf.haar
+wrong 's/}] }/}] /' wrong.json
+head -c 400 brdf.haar >cut.haar
+wrong 's/brdf.haar/cut.haar/' cut.haar
+rm wrong.json cut.haar
+
+# outputs that cannot be written
+refuses_bad_output .exr haarrender scene.json -o @ --spp 1
+expect 4 haarrender scene.json -o x.exr --spp 1 --png missing/x.png
+leaves scene.json "${inputs[@]}"
+finish
