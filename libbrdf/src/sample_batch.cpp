@@ -14,7 +14,7 @@ constexpr float bins2_per_radian = 8100.0F * 2.0F / pi;
 constexpr float step2_at_peak = 0.03F;
 constexpr float step2_per_radian = 4.0F;
 /// At grazing angles lobes are cos θ_d times as wide; below this they are not followed.
-constexpr float lowest_cosine_d = 0.4F;
+constexpr float lowest_cosine_d = 0.3F;
 
 /// Square of the sample spacing over that which the table asks for, the same for all normals of the
 /// cell: if finer samples were for some normals only, the average would lean towards the others.
@@ -36,9 +36,9 @@ inline float needed_resolution(float z, float wi_wo, float spacing) {
 HAARLIGHT_CPU_CLONES void place_samples(SampleBatch& b) {
   HalfDifferenceBatch& angles = b.angles;
   for (int i = 0; i < b.count; ++i) {
-    float x;
-    float y;
-    float z;
+    float x = 0;
+    float y = 0;
+    float z = 0;
     wavelet::square_to_sphere(b.u[i], b.v[i], x, y, z);
     const float nx = b.normal[0][i];
     const float ny = b.normal[1][i];

@@ -16,27 +16,33 @@ void direction_of(const PointRow& points, int i, F& x, F& y, F& z) {
 }
 
 template <class Map, class F>
-void find_texels_by(const PictureShape& shape, const PointRow& points, std::int32_t* texels) {
+void find_texels_by(const PictureShape& shape, const PointGrid& points, std::int32_t* texels) {
   const F last_column = broadcast<F>(static_cast<float>(shape.width - 1));
   const F last_row = broadcast<F>(static_cast<float>(shape.height - 1));
-  for (int i = 0; i < points.count;) {
-    F x;
-    F y;
-    F z;
-    F u;
-    F v;
-    direction_of(points, i, x, y, z);
-    Map::image(x, y, z, u, v);
-    const auto column = truncated(smaller(u * static_cast<float>(shape.width), last_column));
-    const auto row = truncated(smaller(v * static_cast<float>(shape.height), last_row));
-    const auto index = row * shape.width + column;
-    __builtin_memcpy(texels + i, &index, sizeof index);
-    i += static_cast<int>(sizeof index / sizeof(std::int32_t));
+  PointRow line{points.first_u, points.step_u, points.first_v, points.columns};
+  for (int j = 0; j < points.rows; ++j) {
+    line.v = points.first_v + static_cast<float>(j) * points.step_v;
+    for (int i = 0; i < points.columns;) {
+      F x;
+      F y;
+      F z;
+      F u;
+      F v;
+      direction_of(line, i, x, y, z);
+      Map::image(x, y, z, u, v);
+      const auto column = truncated(smaller(u * static_cast<float>(shape.width), last_column));
+      const auto row = truncated(smaller(v * static_cast<float>(shape.height), last_row));
+      const auto index = row * shape.width + column;
+      __builtin_memcpy(texels, &index, sizeof index);
+      constexpr int lanes = sizeof index / sizeof(std::int32_t);
+      texels += lanes;
+      i += lanes;
+    }
   }
 }
 
 template <class F>
-void find_texels_with(const PictureShape& shape, const PointRow& points, std::int32_t* texels) {
+void find_texels_with(const PictureShape& shape, const PointGrid& points, std::int32_t* texels) {
   switch (shape.mapping) {
   case Mapping::Angular:
     return find_texels_by<AngularMap, F>(shape, points, texels);
@@ -75,7 +81,7 @@ void find_places_with(const Frame& f, int size, const PointRow& points, float* c
 // The only code compiled for AVX2: flattened, so that all it calls is too and nothing else is.
 #if defined(__x86_64__)
 [[gnu::target("avx2"), gnu::flatten]] void
-find_texels_wide(const PictureShape& shape, const PointRow& points, std::int32_t* texels) {
+find_texels_wide(const PictureShape& shape, const PointGrid& points, std::int32_t* texels) {
   find_texels_with<Float8>(shape, points, texels);
 }
 
@@ -93,7 +99,7 @@ bool has_wide_lanes() {
 
 } // namespace
 
-void narrow::find_texels(const PictureShape& shape, const PointRow& points, std::int32_t* texels) {
+void narrow::find_texels(const PictureShape& shape, const PointGrid& points, std::int32_t* texels) {
   find_texels_with<Float4>(shape, points, texels);
 }
 
@@ -102,7 +108,7 @@ void narrow::find_places(const Frame& frame, int size, const PointRow& points, f
   find_places_with<Float4>(frame, size, points, columns, rows);
 }
 
-void find_texels(const PictureShape& shape, const PointRow& points, std::int32_t* texels) {
+void find_texels(const PictureShape& shape, const PointGrid& points, std::int32_t* texels) {
 #if defined(__x86_64__)
   if (has_wide_lanes())
     return find_texels_wide(shape, points, texels);

@@ -19,6 +19,16 @@ struct PointRow {
   int count = 0; ///< a multiple of point_step
 };
 
+/// Points of the square, row by row: (first_u + i·step_u, first_v + j·step_v).
+struct PointGrid {
+  float first_u = 0;
+  float first_v = 0;
+  float step_u = 0;
+  float step_v = 0;
+  int columns = 0; ///< a multiple of point_step
+  int rows = 0;
+};
+
 /// Shape of a probe's picture.
 struct PictureShape {
   Mapping mapping = Mapping::Angular;
@@ -27,7 +37,7 @@ struct PictureShape {
 };
 
 /// The pixels (row · width + column) of a picture that show the world directions of the points.
-void find_texels(const PictureShape& shape, const PointRow& points, std::int32_t* texels);
+void find_texels(const PictureShape& shape, const PointGrid& points, std::int32_t* texels);
 
 /// Where the directions of the points, local to a frame, fall in a world map of size × size pixels
 /// with a border of one, in pixels from the centre of the border's first.
@@ -35,7 +45,7 @@ void find_places(const Frame& frame, int size, const PointRow& points, float* co
 
 /// The same by four lanes at a time; what find_texels and find_places do where the CPU has no more.
 namespace narrow {
-void find_texels(const PictureShape& shape, const PointRow& points, std::int32_t* texels);
+void find_texels(const PictureShape& shape, const PointGrid& points, std::int32_t* texels);
 void find_places(const Frame& frame, int size, const PointRow& points, float* columns, float* rows);
 } // namespace narrow
 

@@ -1,6 +1,7 @@
 #include <probe/probe_maps.h>
 
 #include "mapping_lanes.h"
+#include "peaks.h"
 #include "point_kernels.h"
 
 #include <wavelet/parallel.h>
@@ -9,6 +10,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <span>
 
 namespace haarlight::probe {
 namespace {
@@ -16,68 +18,6 @@ namespace {
 /// Samples that a probe pixel gets at least, where the sampling of map pixels can be chosen so.
 constexpr float samples_per_texel = 64;
 constexpr int most_samples_along = 64;
-
-/// A probe pixel whose excess over its neighbours is spread by area instead of being sampled.
-struct Peak {
-  int x = 0;
-  int y = 0;
-  Rgb excess;
-};
-
-/// The probe without its peaks, four floats for each pixel, and the peaks.
-struct Split {
-  std::vector<float> base;
-  std::vector<Peak> peaks;
-};
-
-bool is_own_pixel(const Probe& probe, int x, int y) {
-  if (x < 0 || y < 0 || x >= probe.width() || y >= probe.height())
-    return false;
-  const Vec2 centre((static_cast<float>(x) + 0.5F) / static_cast<float>(probe.width()),
-                    (static_cast<float>(y) + 0.5F) / static_cast<float>(probe.height()));
-  return in_map(probe.mapping(), centre);
-}
-
-/// Of the eight around a pixel; what lies beyond the map, perhaps a copy of the pixel itself,
-/// counts as black.
-Rgb mean_of_neighbours(const Probe& probe, int x, int y) {
-  Rgb sum(0, 0, 0);
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i)
-      if ((i != 0 || j != 0) && is_own_pixel(probe, x + i, y + j))
-        sum += probe.pixel(x + i, y + j);
-  return sum / 8;
-}
-
-/// Base: no more than four times the luminance of the eight neighbours' mean.
-Split split_row(const Probe& probe, int y) {
-  Split row;
-  row.base.resize(4 * static_cast<std::size_t>(probe.width()));
-  for (int x = 0; x < probe.width(); ++x) {
-    const Rgb value = probe.pixel(x, y);
-    const float limit = 4 * luminance(mean_of_neighbours(probe, x, y));
-    const float own = luminance(value);
-    const float kept = own > limit ? limit / own : 1.0F;
-    Eigen::Map<Rgb>(row.base.data() + 4 * static_cast<std::size_t>(x)) = kept * value;
-    if (kept < 1)
-      row.peaks.push_back({x, y, (1 - kept) * value});
-  }
-  return row;
-}
-
-Split split_peaks(const Probe& probe) {
-  std::vector<Split> rows(static_cast<std::size_t>(probe.height()));
-  parallel_for(rows.size(),
-               [&](std::size_t y) { rows[y] = split_row(probe, static_cast<int>(y)); });
-  Split all;
-  all.base.reserve(rows.size() * 4 * static_cast<std::size_t>(probe.width()));
-  for (auto& row : rows) {
-    all.base.insert(all.base.end(), row.base.begin(), row.base.end());
-    all.peaks.insert(all.peaks.end(), row.peaks.begin(), row.peaks.end());
-    row = {};
-  }
-  return all;
-}
 
 Float4 load(const float* values) {
   Float4 result;
@@ -94,23 +34,33 @@ public:
         m_size(static_cast<float>(size)), m_supersample(supersample) {}
 
   Rgb average(int x, int y) const {
-    const int along = samples_along(x, y);
-    const float step = 1.0F / (static_cast<float>(along) * m_size);
-    PointRow points;
-    points.first_u = static_cast<float>(x) / m_size + 0.5F * step;
-    points.step = step;
-    points.count = along;
-    Float4 sum = {};
-    for (int j = 0; j < along; ++j) {
-      points.v = static_cast<float>(y) / m_size + (static_cast<float>(j) + 0.5F) * step;
-      sum += sum_of_row(points);
-    }
-    return Rgb(sum[0], sum[1], sum[2]) / static_cast<float>(along * along);
+    std::array<std::int32_t, most_samples_along * most_samples_along> texels;
+    const PointGrid points = grid_in(x, y);
+    find_texels(m_shape, points, texels.data());
+    const int count = points.columns * points.rows;
+    const Float4 sum = sum_of(std::span(texels).first(static_cast<std::size_t>(count)));
+    return Rgb(sum[0], sum[1], sum[2]) / static_cast<float>(count);
   }
 
 private:
-  /// A multiple of point_step.
-  int samples_along(int x, int y) const {
+  /// About as many points along each side of the pixel, so that both its samples and those of the
+  /// probe's pixels there are enough.
+  PointGrid grid_in(int x, int y) const {
+    const float along = samples_along(x, y);
+    const int steps = std::max(1, static_cast<int>(along / point_step + 0.5F));
+    PointGrid grid;
+    grid.columns = steps * point_step;
+    const int needed =
+        static_cast<int>(std::ceil(along * along / static_cast<float>(grid.columns)));
+    grid.rows = std::max(needed, grid.columns / 2);
+    grid.step_u = 1.0F / (static_cast<float>(grid.columns) * m_size);
+    grid.step_v = 1.0F / (static_cast<float>(grid.rows) * m_size);
+    grid.first_u = static_cast<float>(x) / m_size + 0.5F * grid.step_u;
+    grid.first_v = static_cast<float>(y) / m_size + 0.5F * grid.step_v;
+    return grid;
+  }
+
+  float samples_along(int x, int y) const {
     const Vec2 square((static_cast<float>(x) + 0.5F) / m_size,
                       (static_cast<float>(y) + 0.5F) / m_size);
     const Vec3 w = wavelet::square_to_sphere(square);
@@ -119,27 +69,24 @@ private:
     const float texels = static_cast<float>(m_shape.width) * static_cast<float>(m_shape.height);
     const float texel = Map::density(uv.x(), uv.y()) / texels;
     const float pixel = wavelet::sphere_area / (m_size * m_size);
-    const float wanted = std::min(std::sqrt(samples_per_texel * pixel / texel),
-                                  static_cast<float>(most_samples_along));
-    const int along = std::max(m_supersample, static_cast<int>(std::ceil(wanted)));
-    return (along + point_step - 1) / point_step * point_step;
+    const float wanted = std::sqrt(samples_per_texel * pixel / texel);
+    return std::clamp(wanted, static_cast<float>(m_supersample),
+                      static_cast<float>(most_samples_along));
   }
 
-  Float4 sum_of_row(const PointRow& points) const {
-    std::array<std::int32_t, point_step> texels;
-    PointRow part = points;
-    part.count = point_step;
-    Float4 even = {};
-    Float4 odd = {};
-    for (int i = 0; i < points.count; i += point_step) {
-      part.first_u = points.first_u + static_cast<float>(i) * points.step;
-      find_texels(m_shape, part, texels.data());
-      for (std::size_t k = 0; k < texels.size(); k += 2) {
+  /// Summed by eight, so that rounding errors stay small.
+  Float4 sum_of(std::span<const std::int32_t> texels) const {
+    Float4 sum = {};
+    for (std::size_t i = 0; i < texels.size(); i += 8) {
+      Float4 even = {};
+      Float4 odd = {};
+      for (std::size_t k = i; k < i + 8; k += 2) {
         even += load(m_base.data() + 4 * static_cast<std::size_t>(texels[k]));
         odd += load(m_base.data() + 4 * static_cast<std::size_t>(texels[k + 1]));
       }
+      sum += even + odd;
     }
-    return even + odd;
+    return sum;
   }
 
   const std::vector<float>& m_base;
@@ -212,8 +159,8 @@ private:
 } // namespace
 
 wavelet::Map world_map(const Probe& probe, int size, int supersample) {
-  assert(size >= 4 && supersample >= 1);
-  const Split split = split_peaks(probe);
+  assert(size >= 4 && supersample >= 1 && supersample <= most_samples_along);
+  const SplitProbe split = split_peaks(probe);
   wavelet::Map map(size);
   with_mapping(probe.mapping(), [&](auto mapping) {
     const Gatherer<decltype(mapping)> gatherer(probe, split.base, size, supersample);

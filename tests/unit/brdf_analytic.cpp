@@ -87,9 +87,9 @@ TEST_CASE("specular colours are albedos where the models say so", "[analytic]") 
   CHECK(albedo(BlinnPhong(), 1) == Approx(0.5).epsilon(2e-3));
   CHECK(albedo(Lafortune(), 1) == Approx(0.5).epsilon(2e-3));
   CHECK(albedo(Ward(), 1) == Approx(0.5).epsilon(0.12));
-  for (const AnalyticBrdf& matt : {AnalyticBrdf(Ggx{Rgb::Constant(0.6F), Rgb::Zero()}),
-                                   AnalyticBrdf(Ward{Rgb::Constant(0.6F), Rgb::Zero()})})
-    CHECK(albedo(matt, 1) == Approx(matt.index() == 0 ? 0.6 : 0.6).epsilon(0.01));
+  CHECK(albedo(Ward{Rgb::Constant(0.6F), Rgb::Zero()}, 1) == Approx(0.6).epsilon(1e-3));
+  // Under a black F0 Schlick's term only shows at grazing angles.
+  CHECK(albedo(Ggx{Rgb::Constant(0.6F), Rgb::Zero()}, 1) == Approx(0.6).epsilon(1e-2));
 }
 
 TEST_CASE("published values of the models", "[analytic]") {

@@ -22,6 +22,9 @@ MeasuredBrdf glossy() {
   return MeasuredBrdf(tabulate(Ggx{Rgb(0.1F, 0.2F, 0.3F), Rgb::Constant(0.3F), 0.25}));
 }
 
+/// The middle of part i of the unit interval.
+double middle(int i, int parts) { return (i + 0.5) / parts; }
+
 /// f_r cos of one pixel of one cell by brute force: dense samples of pixel and cell, in the frame
 /// the set documents.
 Rgb brute_pixel(const MeasuredBrdf& brdf, int size, int x, int y, double theta_begin,
@@ -30,16 +33,16 @@ Rgb brute_pixel(const MeasuredBrdf& brdf, int size, int x, int y, double theta_b
   constexpr int cell_steps = 6;
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   for (int k = 0; k < cell_steps * cell_steps; ++k) {
-    const double t = theta_begin + (theta_end - theta_begin) * (k % cell_steps + 0.5) / cell_steps;
-    const double p = phi_begin + (phi_end - phi_begin) * (k / cell_steps + 0.5) / cell_steps;
+    const double t = theta_begin + (theta_end - theta_begin) * middle(k % cell_steps, cell_steps);
+    const double p = phi_begin + (phi_end - phi_begin) * middle(k / cell_steps, cell_steps);
     const Vec3 n =
         Eigen::Vector3d(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t))
             .cast<float>();
     const Frame frame = frame_about(n);
     const Vec3 wo = frame.to_local(mirror(Vec3::UnitZ(), n));
     for (int s = 0; s < fine * fine; ++s) {
-      const auto u = static_cast<float>((x + (s % fine + 0.5) / fine) / size);
-      const auto v = static_cast<float>((y + (s / fine + 0.5) / fine) / size);
+      const auto u = static_cast<float>((x + middle(s % fine, fine)) / size);
+      const auto v = static_cast<float>((y + middle(s / fine, fine)) / size);
       const Vec3 w = frame.to_local(wavelet::square_to_sphere(Vec2(u, v)));
       sum += (brdf.evaluate(w, wo) * std::max(w.z(), 0.0F)).cast<double>();
     }

@@ -46,7 +46,7 @@ void check_maps(const MeasuredBrdf& brdf) {
     for (const BrdfMaps* maps : {&small, &large}) {
       const Rgb sum =
           (wavelet::map_mean(maps->make(column, 0)) * 4 * std::numbers::pi).cast<float>();
-      CHECK(luminance(sum) == Approx(luminance(truth)).epsilon(column == 63 ? 1e-2 : 2.5e-3));
+      CHECK(luminance(sum) == Approx(luminance(truth)).epsilon(column == 63 ? 1.5e-2 : 2.5e-3));
     }
   }
 }

@@ -38,7 +38,8 @@ struct MerlTable {
   }
   /// Index of a cell inside a plane.
   std::size_t cell(int theta_h, int theta_d, int phi_d) const {
-    return static_cast<std::size_t>((theta_h * merl_theta_d_bins + theta_d) * phi_d_bins + phi_d);
+    const int index = (theta_h * merl_theta_d_bins + theta_d) * phi_d_bins + phi_d;
+    return static_cast<std::size_t>(index);
   }
   double value(int channel, std::size_t cell_index) const {
     return raw[static_cast<std::size_t>(channel) * plane_size() + cell_index];

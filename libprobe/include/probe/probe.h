@@ -39,6 +39,11 @@ public:
   /// lies beyond the seam. Black well outside a round map.
   Rgb pixel(int x, int y) const { return Eigen::Map<const Rgb>(m_rgb.data() + offset(x, y)); }
 
+  /// Whether a pixel lies in the picture and its centre in the map.
+  bool owns(int x, int y) const {
+    return x >= 0 && y >= 0 && x < m_width && y < m_height && in_map(m_mapping, centre(x, y));
+  }
+
   /// Direction of a pixel's centre.
   Vec3 direction(int x, int y) const { return image_to_direction(m_mapping, centre(x, y)); }
 

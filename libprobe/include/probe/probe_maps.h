@@ -15,7 +15,7 @@ namespace haarlight::probe {
 struct MapOptions {
   int size = 0;         ///< pixels along a side, a power of two ≥ 4; 0 = default_map_size()
   int orientations = 1; ///< M: 1 = the one world-frame map, else M × M cells of ω_r
-  int supersample = 4;  ///< s: at least s² samples for each pixel
+  int supersample = 4;  ///< s, 1 to 64: at least s² samples for each pixel
 };
 
 /// The frame of cell (i, j) of M × M: n = ω_r = square_to_sphere((i + ½)/M, (j + ½)/M), and t and b
@@ -36,7 +36,7 @@ int default_map_size(const Probe& probe, int orientations);
 /// than those around them are not left to sampling but spread by area, so that their energy is kept
 /// exactly.
 /// @param size        pixels along a side, a power of two ≥ 4
-/// @param supersample at least supersample² samples for each pixel
+/// @param supersample 1 to 64: at least supersample² samples for each pixel
 wavelet::Map world_map(const Probe& probe, int size, int supersample);
 
 /// A world map with a border one pixel wide, four floats for each pixel.

@@ -22,7 +22,8 @@ public:
   const wavelet::SetInfo& info() const { return m_info; }
   const std::vector<wavelet::TreeView>& trees() const { return m_views; }
   const wavelet::TreeView& tree(int column, int row) const {
-    return m_views[static_cast<std::size_t>(row * m_info.columns + column)];
+    return m_views[static_cast<std::size_t>(row) * static_cast<std::size_t>(m_info.columns) +
+                   static_cast<std::size_t>(column)];
   }
 
 private:

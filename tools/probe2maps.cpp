@@ -1,0 +1,70 @@
+// probe2maps: a light probe to one map in the world's frame, or to a table of rotated ones.
+#include <support/map_output.h>
+#include <support/tool.h>
+
+#include <probe/probe_maps.h>
+#include <probe/read_probe.h>
+
+#include <bit>
+
+using namespace haarlight;
+
+namespace {
+
+/// Nothing stands for `auto`.
+using MappingChoice = std::optional<probe::Mapping>;
+
+struct Options {
+  std::string input;
+  MappingChoice mapping;
+  probe::MapOptions maps;
+  tool::MapOutput output;
+};
+
+void declare(tool::Tool& app, Options& o) {
+  app.input(o.input, "IN", "Light probe: Radiance RGBE, OpenEXR, PFM or what OpenImageIO reads");
+  tool::add_map_output(app, o.output);
+  app.value(o.maps.size, "--size",
+            "Pixels along a map's side, a power of two from 4; 0 = 512 to 2048, losing nothing, or "
+            "128 with orientations",
+            0, 8192);
+  app.value(o.maps.orientations, "--orientations",
+            "M: 1 = one map in the world's frame, else M x M mirror directions", 1, 1024);
+  app.value(o.maps.supersample, "--supersample",
+            "Samples along a pixel's side at least; small pixels of the probe get more", 1, 64);
+  app.choice(o.mapping, "--mapping",
+             {{"auto", MappingChoice()},
+              {"angular", probe::Mapping::Angular},
+              {"latlong", probe::Mapping::LatLong},
+              {"mirrorball", probe::Mapping::MirrorBall},
+              {"octahedral", probe::Mapping::Octahedral}},
+             "How the picture shows the sphere; auto judges by aspect and content");
+}
+
+void check(const probe::MapOptions& maps) {
+  const bool power_of_two = std::has_single_bit(static_cast<unsigned>(maps.size));
+  if (maps.size != 0 && (!power_of_two || maps.size < 4))
+    throw tool::UsageError("--size must be a power of two from 4, or 0");
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool app("probe2maps",
+                 "Resamples a light probe into square maps of radiance (the probe's unit) over the "
+                 "sphere by the equal-area octahedral mapping.");
+  Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] {
+    check(options.maps);
+    const probe::LoadedProbe loaded = probe::read_probe(options.input, options.mapping);
+    app.note(options.input + ": " + loaded.mapping_reason);
+    for (const std::string& note : loaded.notes)
+      app.note(options.input + ": " + note);
+    tool::Report report;
+    report.add("source", loaded.source.get("source"))
+        .add("mapping", probe::mapping_name(loaded.probe.mapping()));
+    const probe::ProbeMaps maps(loaded.probe, options.maps, loaded.source);
+    return tool::write_map_set(app, maps, options.output, report);
+  });
+}
