@@ -43,7 +43,7 @@ cp pipelines/scenes/demo.json "$out/scene/demo.json"
 
 echo "== samplers at $spp samples per pixel, and their errors"
 scene=$out/scene/paint-sun-sky.json
-"$bin/haarrender" "$scene" -o "$out/reference.exr" --sampler mis --spp 1024 --seed 1 >/dev/null
+"$bin/haarrender" "$scene" -o "$out/reference.exr" --sampler mis --spp 512 --seed 1 >/dev/null
 pictures=()
 captions=()
 for sampler in product product-table light brdf mis; do
@@ -51,7 +51,7 @@ for sampler in product product-table light brdf mis; do
   pictures+=("$out/sampler-$sampler.exr")
   captions+=(--caption "$sampler $spp spp")
 done
-"$bin/haarsheet" "${pictures[@]}" "$out/reference.exr" "${captions[@]}" --caption "mis 1024 spp" \
+"$bin/haarsheet" "${pictures[@]}" "$out/reference.exr" "${captions[@]}" --caption "mis 512 spp" \
   --reference "$out/reference.exr" --columns 3 --tone-map filmic -o "$out/contact-sheet.png"
 
 echo "done in $((SECONDS - started)) s after the build:"

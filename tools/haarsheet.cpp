@@ -10,6 +10,7 @@
 #include <wavelet/input_file.h>
 
 #include <cmath>
+#include <numeric>
 
 using namespace haarlight;
 
@@ -30,7 +31,8 @@ void declare(tool::Tool& app, Options& options) {
   app.texts(options.captions, "--caption", "TEXT",
             "Caption of a picture, one option for each in their order [the file's name]");
   app.text(options.reference, "--reference", "IN.exr",
-           "Print each picture's error relative to this one, and add it to the captions");
+           "Print each picture's root mean square error relative to this one, pixel by pixel, and "
+           "add it to the captions");
   app.value(options.sheet.columns, "--columns", "Pictures per row; 0 = as square as possible", 0,
             1000);
   app.value(options.sheet.scale, "--font-scale", "Pixels per pixel of the font", 1, 16);
@@ -45,22 +47,22 @@ image::Picture read(const std::string& path) {
   return tool::has_extension(path, ".png") ? image::read_png(path) : image::read_exr(path);
 }
 
-/// Root of the mean squared difference of all channels, relative to the reference's root mean
-/// square.
+/// Root of the mean squared relative error over all channels; where the reference is darker than a
+/// hundredth of its mean, relative to that.
 double relative_error(const image::Picture& picture, const image::Picture& reference,
                       const std::string& path) {
   if (picture.width != reference.width || picture.height != reference.height)
     throw_input_error(path, "is not of the reference's size, " + std::to_string(reference.width) +
                                 " x " + std::to_string(reference.height) + " pixels");
-  double difference = 0;
-  double power = 0;
+  const auto count = static_cast<double>(reference.rgb.size());
+  const double mean = std::accumulate(reference.rgb.begin(), reference.rgb.end(), 0.0) / count;
+  double sum = 0;
   for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
     const auto wanted = static_cast<double>(reference.rgb[i]);
     const double error = static_cast<double>(picture.rgb[i]) - wanted;
-    difference += error * error;
-    power += wanted * wanted;
+    sum += error == 0 ? 0 : error * error / (wanted * wanted + 1e-4 * mean * mean);
   }
-  return power > 0 ? std::sqrt(difference / power) : 0;
+  return std::sqrt(sum / count);
 }
 
 std::string caption_of(const Options& options, std::size_t i) {

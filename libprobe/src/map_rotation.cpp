@@ -6,7 +6,7 @@
 #include <wavelet/sphere_map.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
 namespace haarlight::probe {
 namespace {
@@ -24,25 +24,21 @@ struct Look {
   Vec2 in_pixel;
 };
 
-/// Frames on a grid over the cell; places in the pixel are the points of the same grid in another
-/// order, so that the two are not tied to each other.
+/// Frames on a grid over the cell; places in the pixel by the sequence of the plastic number, so
+/// that together they fall everywhere between the pixels of the world.
 std::vector<Look> looks_of_cell(const MapOptions& options, int column, int row) {
   const Frame centre = light_frame(column, row, options.orientations);
   const int along = samples_along(options);
-  const int count = along * along;
-  int stride = std::max(1, count * 5 / 8); // about the golden section
-  while (std::gcd(stride, count) != 1)
-    ++stride;
+  const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
   std::vector<Look> looks;
-  const auto on_grid = [&](int k) -> Vec2 {
-    return Vec2((static_cast<float>(k % along) + 0.5F), (static_cast<float>(k / along) + 0.5F)) /
-           static_cast<float>(along);
-  };
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < along * along; ++k) {
     const Vec2 cell(static_cast<float>(column), static_cast<float>(row));
-    const Vec2 square = (cell + on_grid(k)) / static_cast<float>(options.orientations);
-    looks.push_back(
-        {carried_frame(centre, wavelet::square_to_sphere(square)), on_grid(k * stride % count)});
+    const Vec2 in_cell(static_cast<float>(k % along) + 0.5F, static_cast<float>(k / along) + 0.5F);
+    const Vec2 square =
+        (cell + in_cell / static_cast<float>(along)) / static_cast<float>(options.orientations);
+    const Vec2 in_pixel(fraction(0.5 + k * 0.7548776662466927),
+                        fraction(0.5 + k * 0.5698402909980532));
+    looks.push_back({carried_frame(centre, wavelet::square_to_sphere(square)), in_pixel});
   }
   return looks;
 }
@@ -99,6 +95,8 @@ public:
     }
   }
 
+  const std::vector<Look>& looks() const { return m_looks; }
+
 private:
   struct Sum {
     Float4 rgbx = {};
@@ -124,25 +122,37 @@ private:
   std::vector<Sum> m_sums;
 };
 
-/// Averages squares of two by two pixels.
-wavelet::Map halved(const wavelet::Map& map) {
-  wavelet::Map half(map.size / 2);
-  for (int y = 0; y < half.size; ++y)
-    for (int x = 0; x < half.size; ++x)
-      half.set(x, y,
-               0.25F * ((map.at(2 * x, 2 * y) + map.at(2 * x + 1, 2 * y)) +
-                        (map.at(2 * x, 2 * y + 1) + map.at(2 * x + 1, 2 * y + 1))));
-  return half;
+/// Adds to a pixel, up to one step over an edge: edges are folded onto themselves.
+void add_folded(wavelet::Map& map, int x, int y, const Rgb& value) {
+  const int last = map.size - 1;
+  const int to_x = std::clamp(x, 0, last);
+  const int to_y = std::clamp(y, 0, last);
+  const std::size_t offset =
+      map.offset(to_y != y ? last - to_x : to_x, to_x != x ? last - to_y : to_y);
+  Eigen::Map<Rgb>(map.rgb.data() + offset) += value;
 }
 
-/// The pixel that stands at (x, y), up to one step over an edge: edges are folded onto themselves.
-Rgb folded_pixel(const wavelet::Map& map, int x, int y) {
-  const int last = map.size - 1;
-  const bool over_side = x < 0 || x > last;
-  const bool over_top = y < 0 || y > last;
-  const int from_x = std::clamp(x, 0, last);
-  const int from_y = std::clamp(y, 0, last);
-  return map.at(over_top ? last - from_x : from_x, over_side ? last - from_y : from_y);
+/// Shares a light among the four pixels whose centres are nearest, as the look-ups do.
+void add_light(wavelet::Map& map, const Vec3& local, const Rgb& radiance) {
+  const Vec2 place = wavelet::sphere_to_square(local) * static_cast<float>(map.size);
+  const float column = std::floor(place.x() - 0.5F);
+  const float row = std::floor(place.y() - 0.5F);
+  const float s = place.x() - 0.5F - column;
+  const float t = place.y() - 0.5F - row;
+  const int x = static_cast<int>(column);
+  const int y = static_cast<int>(row);
+  add_folded(map, x, y, (1 - s) * (1 - t) * radiance);
+  add_folded(map, x + 1, y, s * (1 - t) * radiance);
+  add_folded(map, x, y + 1, (1 - s) * t * radiance);
+  add_folded(map, x + 1, y + 1, s * t * radiance);
+}
+
+void add_lights(wavelet::Map& map, const WorldLevel& level, const std::vector<Look>& looks) {
+  const float pixel = wavelet::sphere_area / static_cast<float>(map.size * map.size);
+  const float share = 1.0F / (pixel * static_cast<float>(looks.size()));
+  for (const Look& look : looks)
+    for (const WorldLevel::Light& light : level.lights)
+      add_light(map, look.frame.to_local(light.direction), light.power * share);
 }
 
 } // namespace
@@ -156,28 +166,12 @@ int matching_level_size(const MapOptions& options, int full_size) {
   return size;
 }
 
-WorldLevel make_level(const wavelet::Map& map, int size) {
-  wavelet::Map small = map;
-  while (small.size > size)
-    small = halved(small);
-  WorldLevel level;
-  level.size = small.size;
-  const int side = small.size + 2;
-  level.rgbx.resize(4 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) {
-      const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(side) +
-                         static_cast<std::size_t>(x);
-      Eigen::Map<Rgb>(level.rgbx.data() + 4 * index) = folded_pixel(small, x - 1, y - 1);
-    }
-  return level;
-}
-
 wavelet::Map rotated_map(const WorldLevel& level, const MapOptions& options, int column, int row) {
   wavelet::Map map(options.size);
   RowMaker maker(level, options, column, row);
   for (int y = 0; y < map.size; ++y)
     maker.make(map, y);
+  add_lights(map, level, maker.looks());
   return map;
 }
 

@@ -11,8 +11,10 @@ namespace haarlight::probe {
 /// does.
 int matching_level_size(const MapOptions& options, int full_size);
 
-/// A world map averaged down to `size`.
-WorldLevel make_level(const wavelet::Map& map, int size);
+/// A world map averaged down to `size`, its peaks made lights.
+/// @param map_size side of the maps to be made: a light is spread over several points where their
+///                 pixels are smaller than the level's
+WorldLevel make_level(const wavelet::Map& map, int size, int map_size);
 
 /// The map of one cell of ω_r, averaged over the cell.
 wavelet::Map rotated_map(const WorldLevel& level, const MapOptions& options, int column, int row);

@@ -40,16 +40,16 @@ ProbeMaps::ProbeMaps(const Probe& probe, const MapOptions& options, const Proven
   if (m_options.size == 0)
     m_options.size = default_map_size(probe, m_options.orientations);
   assert(m_options.size >= 4 && m_options.orientations >= 1 && m_options.supersample >= 1);
-  describe(source);
+  describe(source, probe.mapping());
   if (m_options.orientations == 1) {
     m_world = world_map(probe, m_options.size, m_options.supersample);
     return;
   }
   const wavelet::Map full = world_map(probe, default_map_size(probe, 1), m_options.supersample);
-  m_level = make_level(full, matching_level_size(m_options, full.size));
+  m_level = make_level(full, matching_level_size(m_options, full.size), m_options.size);
 }
 
-void ProbeMaps::describe(const Provenance& source) {
+void ProbeMaps::describe(const Provenance& source, Mapping mapping) {
   const bool world = m_options.orientations == 1;
   m_info.kind = wavelet::SetKind::Light;
   m_info.size = m_options.size;
@@ -62,6 +62,7 @@ void ProbeMaps::describe(const Provenance& source) {
                          "about n; averaged over the cell";
   m_info.units = "radiance of the probe";
   m_info.provenance = source;
+  m_info.provenance.set("mapping", mapping_name(mapping));
   m_info.provenance.set("orientations", std::to_string(m_options.orientations));
   m_info.provenance.set("supersample", std::to_string(m_options.supersample));
   m_info.provenance.set("version", version_text());

@@ -17,8 +17,11 @@ Descent ProductTree::sample(float u1, float u2) const {
   std::int32_t next = 0;
   while (next >= 0) {
     const ProductNode& node = m_nodes[static_cast<std::size_t>(next)];
-    next = node.child[descend(d, node.weights)];
+    const unsigned q = steer(d, node.weights);
+    next = node.child[q];
+    d.pdf = node.weights[q]; // a node's mean is its parent's weight: only the last one counts
   }
+  d.pdf /= mean();
   descend_tree(d, density(~next));
   return d;
 }
@@ -30,11 +33,13 @@ float ProductTree::pdf(float u, float v) const {
   std::int32_t next = 0;
   while (next >= 0) {
     const ProductNode& node = m_nodes[static_cast<std::size_t>(next)];
-    const unsigned q = follow(d, node.weights, u, v);
-    if (!(node.weights[q] > 0))
-      return 0;
+    const unsigned q = steer_to(d, u, v);
     next = node.child[q];
+    d.pdf = node.weights[q];
+    if (!(d.pdf > 0))
+      return 0;
   }
+  d.pdf /= mean();
   follow_tree(d, density(~next), u, v);
   return d.pdf;
 }

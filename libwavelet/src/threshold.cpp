@@ -161,6 +161,14 @@ std::string criterion_name(Criterion criterion) {
   return names[static_cast<std::size_t>(criterion)].first;
 }
 
+double default_tolerance(const SetInfo& info, Criterion criterion) {
+  if (criterion == Criterion::L2)
+    return 0.01;
+  if (criterion == Criterion::Linf)
+    return 0.002;
+  return info.world_frame ? 0.0001 : 0.0005;
+}
+
 std::size_t apply_threshold(Map& transformed, const ThresholdOptions& options) {
   assert(options.keep || options.criterion != Criterion::Count);
   std::vector<Ranked> all = rank_all(transformed, options.criterion);

@@ -19,11 +19,13 @@ TreeTable::TreeTable(const std::string& path, SetKind kind)
 
 TreeTable::TreeTable(const wavelet::MapSource& source) : m_info(source.info()) {
   m_owned.resize(static_cast<std::size_t>(m_info.map_count()));
+  wavelet::CompressOptions options;
+  options.threshold.tolerance = default_tolerance(m_info, options.threshold.criterion);
   parallel_for(m_owned.size(), [&](std::size_t i) {
     const int index = static_cast<int>(i);
     wavelet::CompressReport report;
     m_owned[i] = compress_map(source.make(index % m_info.columns, index / m_info.columns),
-                              wavelet::CompressOptions{}, report);
+                              options, report);
   });
   for (const wavelet::Tree& tree : m_owned)
     m_views.push_back(tree.view());

@@ -162,7 +162,7 @@ struct DenseProduct {
     for (std::size_t l = 1; l < levels.size(); ++l) {
       const float* p = levels[l].data() + ((2 * y) << l) + 2 * x;
       const std::size_t side = std::size_t{1} << l;
-      const unsigned q = descend(d, Float4{p[0], p[1], p[side], p[side + 1]});
+      const unsigned q = steer(d, Float4{p[0], p[1], p[side], p[side + 1]});
       x = 2 * x + (q & 1U);
       y = 2 * y + (q >> 1U);
     }

@@ -1,37 +1,16 @@
 #pragma once
-// A folder that lives as long as a test, and a map set without any source behind it.
+// Files as strings, and a map set without any source behind it.
+
+#include "temporary_folder.h"
 
 #include <wavelet/map_set.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
-#include <stdlib.h>
-
 namespace haarlight::testing {
-
-class Folder {
-public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "haarlight.XXXXXX").string();
-    m_path = ::mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(m_path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string file(const std::string& name) const { return (m_path / name).string(); }
-  std::size_t count() const {
-    const std::filesystem::directory_iterator files(m_path);
-    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
-  }
-
-private:
-  std::filesystem::path m_path;
-};
 
 inline std::string read_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

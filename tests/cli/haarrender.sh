@@ -21,8 +21,17 @@ cat >scene.json <<'END'
 END
 
 # the work
+cat >sphere.json <<'END'
+{ "film": {"width": 16, "height": 16},
+  "camera": {"type": "orthographic", "from": [0, 0, 6], "to": [0, 0, 0], "height": 2.2},
+  "light": {"probe": "probe.hdr", "haar": "probe.haar", "table": "probe.table.haar"},
+  "materials": {"measured": {"brdf": "brdf.binary", "haar": "brdf.haar", "table": "brdf.table.haar"}},
+  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "measured"}] }
+END
 for sampler in product product-table light brdf mis; do
-  expect 0 haarrender scene.json -o $sampler.exr --sampler $sampler --spp 4
+  scene=scene.json
+  [ $sampler = product-table ] && scene=sphere.json
+  expect 0 haarrender $scene -o $sampler.exr --sampler $sampler --spp 4
   check "$sampler.exr is a picture" "$bin/haarsheet" $sampler.exr -o sheet.png
   rm $sampler.exr sheet.png
 done
@@ -41,7 +50,7 @@ done
 expect 0 haarrender scene.json -o b.exr --spp 2 --points random --brdf-lookup nearest --probe-lookup bilinear
 expect 0 haarrender scene.json -o b.exr --png b.png --size 8x6 --spp 1 --time-limit 0.1
 check "b.png is a picture" "$bin/haarsheet" b.png -o sheet.png
-rm a.exr b.exr b.png sheet.png
+rm a.exr b.exr b.png sheet.png sphere.json
 
 # usage
 expect 2 haarrender scene.json

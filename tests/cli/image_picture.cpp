@@ -27,7 +27,7 @@ Picture ramp(int width, int height) {
 } // namespace
 
 TEST_CASE("an EXR picture survives exactly", "[image]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Picture picture = ramp(13, 7);
   image::write_exr(folder.file("a.exr"), picture);
   const Picture back = image::read_exr(folder.file("a.exr"));
@@ -37,7 +37,7 @@ TEST_CASE("an EXR picture survives exactly", "[image]") {
 }
 
 TEST_CASE("an EXR holds channels and attributes, and no clock", "[image]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Picture picture = ramp(5, 3);
   image::ExrImage exr;
   exr.width = 5;
@@ -71,7 +71,7 @@ TEST_CASE("sRGB codes round to the nearest and come back", "[image]") {
 }
 
 TEST_CASE("a PNG picture comes back to within a code", "[image]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Picture picture = ramp(31, 17);
   image::write_png(folder.file("a.png"), picture);
   const Picture back = image::read_png(folder.file("a.png"));
@@ -95,7 +95,7 @@ TEST_CASE("exposure and tone maps keep the order of values", "[image]") {
 }
 
 TEST_CASE("broken pictures are refused", "[image]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   image::write_png(folder.file("a.png"), ramp(31, 17));
   image::write_exr(folder.file("a.exr"), ramp(31, 17));
   const std::string png = read_bytes(folder.file("a.png"));

@@ -1,6 +1,8 @@
 #pragma once
 // What the BRDF tests share: temporary files, random directions, and the real measurements.
 
+#include "temporary_folder.h"
+
 #include <brdf/measured_brdf.h>
 
 #include <wavelet/geometry.h>
@@ -15,27 +17,9 @@
 #include <string>
 #include <vector>
 
-#include <unistd.h>
 #include <zstd.h>
 
 namespace brdf_test {
-
-/// A folder that vanishes with the object.
-struct TemporaryFolder {
-  std::filesystem::path path;
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "brdf_test.XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string file(const std::string& name) const { return (path / name).string(); }
-};
 
 inline std::string read_bytes(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);

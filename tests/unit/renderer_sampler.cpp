@@ -75,7 +75,7 @@ private:
 
   void probe(const std::string& name, probe::SceneKind kind) {
     const std::string file = m_folder.file(name + ".hdr");
-    probe::write_rgbe(file, probe::draw_angular(*probe::make_scene(kind), 128));
+    probe::write_rgbe(file, probe::draw_angular(*probe::make_scene(kind), 64));
     const probe::LoadedProbe loaded = probe::read_probe(file, probe::Mapping::Angular);
     probe::MapOptions options;
     options.size = 128;
@@ -143,7 +143,7 @@ constexpr std::size_t sample_count = 4096;
 double true_error(const LoadedScene& scene, const Sampler& sampler, const ShadingPoint& point,
                   const probe::Probe& probe, double truth) {
   double square = 0;
-  for_each_point(probe, 1, [&](const Vec3& w, double omega) {
+  for_each_point(probe, 4, [&](const Vec3& w, double omega) {
     const double value = integrand(scene, point, w);
     if (value > 0)
       square += omega * value * value / static_cast<double>(sampler.pdf(w, sample_count));

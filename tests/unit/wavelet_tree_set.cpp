@@ -113,7 +113,7 @@ private:
 std::string hex_dump(const std::string& bytes) {
   std::string dump;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
-    char text[16];
+    char text[32];
     if (i % 16 == 0) {
       std::snprintf(text, sizeof text, "%s%04zx ", i == 0 ? "" : "\n", i);
       dump += text;

@@ -143,7 +143,10 @@ int Tool::run(int argc, const char* const* argv, const std::function<int()>& bod
   if (const auto code = parse(argc, argv))
     return *code;
   const ThreadLimit limit(m_threads);
-  return guarded(body);
+  const int code = guarded(body);
+  if (code < exit_usage && !m_quiet)
+    std::for_each(m_notes.begin(), m_notes.end(), say);
+  return code;
 }
 
 int Tool::guarded(const std::function<int()>& body) const {
@@ -166,8 +169,11 @@ int Tool::complain(int code, const std::string& message) const {
 }
 
 void Tool::note(const std::string& line) const {
-  if (!m_quiet)
-    say(m_name + ": " + one_line(line));
+  const std::string text = m_name + ": " + one_line(line);
+  if (m_verbose && !m_quiet)
+    say(text);
+  else
+    m_notes.push_back(text);
 }
 
 void Tool::detail(const std::string& line) const {

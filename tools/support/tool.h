@@ -107,7 +107,9 @@ public:
   bool json() const { return m_json; }
   const std::string& name() const { return m_name; }
 
-  /// A diagnostic line on stderr, unless --quiet.
+  /// A diagnostic line on stderr, unless --quiet: at once with --verbose, else when the body is
+  /// done, and not at all if it fails, so that the error stands alone. Not safe from several
+  /// threads.
   void note(const std::string& line) const;
   /// A diagnostic line on stderr with --verbose only.
   void detail(const std::string& line) const;
@@ -131,6 +133,7 @@ private:
 
   std::string m_name;
   std::unique_ptr<Parser> m_parser;
+  mutable std::vector<std::string> m_notes;
   bool m_quiet = false;
   bool m_verbose = false;
   bool m_json = false;

@@ -39,10 +39,16 @@ int default_map_size(const Probe& probe, int orientations);
 /// @param supersample 1 to 64: at least supersample² samples for each pixel
 wavelet::Map world_map(const Probe& probe, int size, int supersample);
 
-/// A world map with a border one pixel wide, four floats for each pixel.
+/// What the maps of a table are made from: a world map of their resolution, without the pixels that
+/// are far brighter than those around them, and points of light in place of these.
 struct WorldLevel {
+  struct Light {
+    Vec3 direction;
+    Rgb power; ///< radiance × solid angle
+  };
   int size = 0;
-  std::vector<float> rgbx;
+  std::vector<float> rgbx; ///< with a border one pixel wide, four floats for each pixel
+  std::vector<Light> lights;
 };
 
 /// The maps of a probe. make() is the world map, or the map of one cell of ω_r, averaged over the
@@ -58,7 +64,7 @@ public:
   std::optional<Rgb> integral(int column, int row) const override;
 
 private:
-  void describe(const Provenance& source);
+  void describe(const Provenance& source, Mapping mapping);
 
   MapOptions m_options;
   Rgb m_integral;

@@ -24,41 +24,46 @@ namespace detail {
 
 inline constexpr float below_one = 0x1.fffffep-1F;
 
-/// Chooses between two with probability p for the first; rescales u. Returns whether the second.
-inline bool choose(float& u, float p) {
-  const bool second = u >= p;
-  u = std::min(second ? (u - p) / (1.0F - p) : u / p, below_one);
-  return second;
+/// Chooses between two with weights `first` and `second`, not both 0; rescales u. Returns 1 for the second.
+/// Free of branches, which chance would mispredict half of the time.
+inline unsigned choose(float& u, float first, float second) {
+  const float t = u * (first + second);
+  const bool beyond = t >= first;
+  const auto chosen = static_cast<float>(beyond);
+  u = std::min((t - chosen * first) / (first + chosen * (second - first)), below_one);
+  return beyond ? 1U : 0U;
+}
+
+inline void enter(Descent& d, unsigned q) {
+  d.side *= 0.5F;
+  d.x += static_cast<float>(q & 1U) * d.side;
+  d.y += static_cast<float>(q >> 1U) * d.side;
 }
 
 } // namespace detail
 
-/// One step down. @param w weights ≥ 0 of the quadrants q = qx + 2 qy, not all 0. @return q
-inline unsigned descend(Descent& d, Float4 w) {
-  const float left = w[0] + w[2];
-  const float right = w[1] + w[3];
-  const float sum = left + right;
-  const unsigned qx = detail::choose(d.u1, left / sum) ? 1U : 0U;
-  const float upper = qx != 0 ? w[1] : w[0];
-  const unsigned qy = detail::choose(d.u2, upper / (qx != 0 ? right : left)) ? 1U : 0U;
+/// One step down, but for the pdf. @param w weights ≥ 0 of the quadrants q = qx + 2 qy, not all 0.
+/// @return q
+inline unsigned steer(Descent& d, Float4 w) {
+  const float columns[2][2] = {{w[0], w[2]}, {w[1], w[3]}};
+  const unsigned qx = detail::choose(d.u1, w[0] + w[2], w[1] + w[3]);
+  const unsigned qy = detail::choose(d.u2, columns[qx][0], columns[qx][1]);
   const unsigned q = qx + 2 * qy;
-  d.side *= 0.5F;
-  d.x += qx != 0 ? d.side : 0.0F;
-  d.y += qy != 0 ? d.side : 0.0F;
-  d.pdf *= 4.0F * w[q] / sum;
+  detail::enter(d, q);
   return q;
 }
 
-/// One step of the pdf of descend(): the quadrant that holds (u, v) of the unit square.
-inline unsigned follow(Descent& d, Float4 w, float u, float v) {
-  d.side *= 0.5F;
-  const unsigned qx = u >= d.x + d.side ? 1U : 0U;
-  const unsigned qy = v >= d.y + d.side ? 1U : 0U;
-  const unsigned q = qx + 2 * qy;
-  d.x += qx != 0 ? d.side : 0.0F;
-  d.y += qy != 0 ? d.side : 0.0F;
-  d.pdf *= 4.0F * w[q] / ((w[0] + w[2]) + (w[1] + w[3]));
+/// The step of steer() towards (u, v) of the unit square, in the descent's square.
+inline unsigned steer_to(Descent& d, float u, float v) {
+  const float half = 0.5F * d.side;
+  const unsigned q = (u >= d.x + half ? 1U : 0U) + (v >= d.y + half ? 2U : 0U);
+  detail::enter(d, q);
   return q;
+}
+
+/// Factor that the choice of quadrant q puts on a pdf.
+inline float quadrant_density(Float4 w, unsigned q) {
+  return 4.0F * w[q] / ((w[0] + w[2]) + (w[1] + w[3]));
 }
 
 /// The point where a finished descent ends.
@@ -105,12 +110,20 @@ template <class Step> void walk_density(TreeDensity density, Step step) {
 
 /// Leads a descent from a square to the end of its tree; d.pdf becomes the pdf per unit square.
 inline void descend_tree(Descent& d, const TreeDensity& density) {
-  detail::walk_density(density, [&](Float4 w) { return descend(d, w); });
+  detail::walk_density(density, [&](Float4 w) {
+    const unsigned q = steer(d, w);
+    d.pdf *= quadrant_density(w, q);
+    return q;
+  });
 }
 
-/// The pdf of descend_tree() at (u, v), which must lie in the descent's square.
+/// The pdf of descend_tree() at (u, v), which must lie in the descent's square, into d.pdf.
 inline void follow_tree(Descent& d, const TreeDensity& density, float u, float v) {
-  detail::walk_density(density, [&](Float4 w) { return follow(d, w, u, v); });
+  detail::walk_density(density, [&](Float4 w) {
+    const unsigned q = steer_to(d, u, v);
+    d.pdf *= quadrant_density(w, q);
+    return q;
+  });
 }
 
 } // namespace haarlight::wavelet

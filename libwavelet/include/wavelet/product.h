@@ -37,7 +37,7 @@ public:
   Rgb integral() const { return m_integral; }
 
   /// Nothing to sample: the product vanishes.
-  bool empty() const { return m_nodes.empty() || !(lane_sum(m_nodes[0].weights) > 0); }
+  bool empty() const { return m_nodes.empty() || !(mean() > 0); }
 
   std::size_t leaf_count() const { return m_leaves.size(); }
   std::size_t bytes() const {
@@ -57,6 +57,9 @@ private:
 
   /// Turns node weights, given at leaves, into averages all the way up.
   void sum_upwards(const std::vector<std::int32_t>& parent_slots);
+
+  /// Average weight over the whole square.
+  float mean() const { return 0.25F * lane_sum(m_nodes[0].weights); }
 
   TreeDensity density(std::int32_t leaf) const {
     const ProductLeaf& l = m_leaves[static_cast<std::size_t>(leaf)];
