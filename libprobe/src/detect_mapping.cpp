@@ -14,7 +14,7 @@ double mean_luminance(const Image& image) {
   double sum = 0;
   for (std::size_t i = 0; i < image.rgb.size(); i += 3)
     sum += luminance(Eigen::Map<const Rgb>(image.rgb.data() + i));
-  return sum / static_cast<double>(image.rgb.size() / 3);
+  return 3 * sum / static_cast<double>(image.rgb.size());
 }
 
 /// Share of the pixels well outside the inscribed disk that are empty: nearly all in pictures of

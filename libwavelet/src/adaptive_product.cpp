@@ -9,8 +9,8 @@ namespace {
 /// No square of level l reaches further than this times 2^-l radians from its centre.
 constexpr float square_radius = 4.4F;
 
-/// The reflectance counts as at least this share of its mean wherever light can come from, so that no
-/// direction of the integrand is out of reach.
+/// The reflectance counts as at least this share of its mean wherever light can come from, so that
+/// no direction of the integrand is out of reach.
 constexpr float reflectance_floor = 0.005F;
 
 int morton_column(unsigned code) {
@@ -23,8 +23,9 @@ AdaptiveProduct::AdaptiveProduct(const TreeView& light) : m_light(light) {
   m_product.m_light = light;
   // The families of level start_level − 1 and the nodes above them are the same for every product.
   for (unsigned code = 0; code < (1U << (2 * (start_level - 1))); ++code) {
-    Family family = {to_lanes(light.mean), light.root(), 0, start_level - 1, morton_column(code),
-                     morton_column(code >> 1U), no_place};
+    Family family = {
+        to_lanes(light.mean),      light.root(), 0, start_level - 1, morton_column(code),
+        morton_column(code >> 1U), no_place};
     for (int l = start_level - 2; l >= 0; --l) {
       const unsigned q = (code >> static_cast<unsigned>(2 * l)) & 3U;
       if (family.node != no_node)
@@ -125,9 +126,8 @@ void AdaptiveProduct::weigh(const Family& family, Quadrants& quadrants) const {
   const Float4 density = larger(lr * r + lg * g + lb * b, zero);
   const Float4 relative = deviation / (r + g + b + 1e-30F);
   quadrants.weight = density * power_of_two(-2 * level);
-  quadrants.error = level < m_reflectance.pyramid->levels()
-                        ? quadrants.weight * relative * relative
-                        : zero;
+  quadrants.error =
+      level < m_reflectance.pyramid->levels() ? quadrants.weight * relative * relative : zero;
 }
 
 /// Adds a family's visible quadrants; the first takes the family's place, the rest are appended.
@@ -193,8 +193,8 @@ AdaptiveProduct::Family AdaptiveProduct::split(std::uint32_t index) {
   return {s.light, s.node, product_node, s.level, s.x, s.y, index};
 }
 
-/// Pass by pass, splits every square whose error is above the mean of the pass, and its quadrants with
-/// it, until the bound holds.
+/// Pass by pass, splits every square whose error is above the mean of the pass, and its quadrants
+/// with it, until the bound holds.
 void AdaptiveProduct::refine(const AdaptiveOptions& options) {
   const auto limit = static_cast<std::size_t>(options.max_leaves);
   const auto bound = static_cast<double>(options.variance_bound);

@@ -13,8 +13,8 @@ struct Level {
   int side = 0;
   std::vector<Float4> moments;
 
-  /// The square at (x, y); coordinates one step outside wrap around the octahedron: across an edge lies
-  /// the same edge, mirrored.
+  /// The square at (x, y); coordinates one step outside wrap around the octahedron: across an edge
+  /// lies the same edge, mirrored.
   Float4 at(int x, int y) const {
     if (x < 0 || x >= side) {
       x = x < 0 ? -1 - x : 2 * side - 1 - x;
@@ -78,8 +78,8 @@ void mark_nodes(const TreeView& tree, std::uint32_t node, int level, int x, int 
                 std::vector<std::vector<std::uint8_t>>& marks) {
   if (node == no_node)
     return;
-  marks[static_cast<std::size_t>(level)][(static_cast<std::size_t>(y) << level) +
-                                         static_cast<std::size_t>(x)] = 1;
+  marks[static_cast<std::size_t>(level)]
+       [(static_cast<std::size_t>(y) << level) + static_cast<std::size_t>(x)] = 1;
   for (unsigned q = 0; q < 4; ++q)
     mark_nodes(tree, tree.child(node, q), level + 1, 2 * x + static_cast<int>(q & 1U),
                2 * y + static_cast<int>(q >> 1U), marks);

@@ -3,8 +3,8 @@
 namespace haarlight::wavelet {
 namespace {
 
-/// Floor of the reflectance in the density, as a share of its mean: thresholding may have lost what a
-/// square once held.
+/// Floor of the reflectance in the density, as a share of its mean: thresholding may have lost what
+/// a square once held.
 constexpr float reflectance_floor = 0.005F;
 
 } // namespace
@@ -44,7 +44,8 @@ struct TableProduct::Builder {
       const unsigned s = symmetry.to_stored(q);
       const Pair quadrant = {lights[q], stored[s], light.child(square.light_node, q),
                              reflectance.child(square.reflectance_node, s)};
-      const std::int32_t below = visit(quadrant, 4 * index + static_cast<std::int32_t>(q), area / 4);
+      const std::int32_t below =
+          visit(quadrant, 4 * index + static_cast<std::int32_t>(q), area / 4);
       product.m_nodes[static_cast<std::size_t>(index)].child[q] = below;
     }
     return index;

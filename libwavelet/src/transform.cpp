@@ -7,27 +7,31 @@ namespace haarlight::wavelet {
 namespace {
 
 /// One lifting step on a pair: average into `a`, half difference into `b`.
-template <class T> void lift(T& a, T& b) {
+template <class T>
+void lift(T& a, T& b) {
   const T difference = T(0.5) * (a - b);
   a -= difference;
   b = difference;
 }
 
-template <class T> void unlift(T& a, T& b) {
+template <class T>
+void unlift(T& a, T& b) {
   const T sum = a + b;
   b = a - b;
   a = sum;
 }
 
 /// The four corners of a 2 × 2 block, `reach` elements apart along a row and `drop` along a column.
-template <class T> void forward_block(T* a, std::size_t reach, std::size_t drop) {
+template <class T>
+void forward_block(T* a, std::size_t reach, std::size_t drop) {
   lift(a[0], a[reach]);
   lift(a[drop], a[drop + reach]);
   lift(a[0], a[drop]);
   lift(a[reach], a[drop + reach]);
 }
 
-template <class T> void inverse_block(T* a, std::size_t reach, std::size_t drop) {
+template <class T>
+void inverse_block(T* a, std::size_t reach, std::size_t drop) {
   unlift(a[0], a[drop]);
   unlift(a[reach], a[drop + reach]);
   unlift(a[0], a[reach]);
@@ -48,13 +52,15 @@ void for_each_block(T* image, int size, int channels, int stride, Block block) {
   }
 }
 
-template <class T> void forward(T* image, int size, int channels) {
+template <class T>
+void forward(T* image, int size, int channels) {
   assert(std::has_single_bit(static_cast<unsigned>(size)));
   for (int stride = 1; stride < size; stride *= 2)
     for_each_block(image, size, channels, stride, forward_block<T>);
 }
 
-template <class T> void inverse(T* image, int size, int channels) {
+template <class T>
+void inverse(T* image, int size, int channels) {
   assert(std::has_single_bit(static_cast<unsigned>(size)));
   for (int stride = size / 2; stride >= 1; stride /= 2)
     for_each_block(image, size, channels, stride, inverse_block<T>);

@@ -6,7 +6,8 @@
 
 namespace haarlight::wavelet {
 
-/// @param transformed a map after haar_forward(); squares whose three coefficients and all finer ones
+/// @param transformed a map after haar_forward(); squares whose three coefficients and all finer
+/// ones
 ///                    are zero get no node
 /// @param channels    3, or 1 to store luminance
 Tree build_tree(const Map& transformed, int channels, CoefficientType type);

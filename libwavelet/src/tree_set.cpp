@@ -56,10 +56,11 @@ public:
 
   TreeView tree(const FileHeader& h, const IndexEntry& entry) const {
     const std::size_t size = h.coefficient_type == 0 ? 2 : 4;
-    require(entry.offset % section_alignment == 0, entry.offset, "tree offset is no multiple of 16");
-    const auto bytes = section(entry.offset,
-                               tree_size(entry.node_count, h.levels, h.channels, size),
-                               entry.offset, "tree");
+    require(entry.offset % section_alignment == 0, entry.offset,
+            "tree offset is no multiple of 16");
+    const auto bytes =
+        section(entry.offset, tree_size(entry.node_count, h.levels, h.channels, size), entry.offset,
+                "tree");
     require(hash_bytes(bytes) == entry.checksum, entry.offset,
             "tree checksum does not fit the tree");
     TreeView view;

@@ -11,7 +11,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the format is little-endian");
 
-template <class T> void append(std::vector<std::byte>& bytes, const T* values, std::size_t count) {
+template <class T>
+void append(std::vector<std::byte>& bytes, const T* values, std::size_t count) {
   const auto* p = reinterpret_cast<const std::byte*>(values);
   bytes.insert(bytes.end(), p, p + count * sizeof(T));
 }
@@ -56,8 +57,8 @@ void TreeSetWriter::add(const Tree& tree) {
   append(bytes, tree.links.data(), nodes);
   append(bytes, tree.coefficients.data(), coefficient_count * coefficient_bytes(m_type));
   bytes.resize(align_up(bytes.size() + tree_padding));
-  Entry entry = {m_file.position(), hash_bytes(bytes), static_cast<std::uint32_t>(nodes),
-                 tree.scale,        {}};
+  Entry entry = {
+      m_file.position(), hash_bytes(bytes), static_cast<std::uint32_t>(nodes), tree.scale, {}};
   for (int c = 0; c < 3; ++c)
     entry.mean[c] = tree.mean[c];
   m_entries.push_back(entry);
@@ -81,8 +82,8 @@ void TreeSetWriter::finish() {
   header.text_checksum = hash_bytes(std::as_bytes(std::span(text)));
   m_file.write(text.data(), text.size());
   header.file_bytes = m_file.position();
-  header.header_checksum = hash_bytes(
-      std::as_bytes(std::span(&header, 1)).first(offsetof(FileHeader, header_checksum)));
+  header.header_checksum =
+      hash_bytes(std::as_bytes(std::span(&header, 1)).first(offsetof(FileHeader, header_checksum)));
   unsigned char padded[128] = {};
   static_assert(sizeof padded == (sizeof(FileHeader) + 15) / 16 * 16);
   std::memcpy(padded, &header, sizeof header);

@@ -20,17 +20,20 @@ Light::Light(const LightDescription& description, probe::Lookup lookup) {
   if (!description.haar.empty()) {
     m_map.emplace(description.haar, wavelet::SetKind::Light);
     if (!m_map->info().world_frame)
-      throw_input_error(description.haar, "holds rotated maps, which belong under \"table\"; \"haar\" wants "
-                                          "the one world-frame map of --orientations 1");
+      throw_input_error(description.haar,
+                        "holds rotated maps, which belong under \"table\"; \"haar\" wants "
+                        "the one world-frame map of --orientations 1");
   }
   if (!description.table.empty()) {
     m_rotated.emplace(description.table, wavelet::SetKind::Light);
     if (m_rotated->info().world_frame)
-      throw_input_error(description.table, "holds the one world-frame map, which belongs under \"haar\"; "
-                                           "\"table\" wants rotated maps, --orientations above 1");
+      throw_input_error(description.table,
+                        "holds the one world-frame map, which belongs under \"haar\"; "
+                        "\"table\" wants rotated maps, --orientations above 1");
   }
   if (!m_probe && !m_map)
-    throw_input_error(description.table, "is all that the light names; it needs \"probe\" or \"haar\" as well");
+    throw_input_error(description.table,
+                      "is all that the light names; it needs \"probe\" or \"haar\" as well");
 }
 
 void Light::place(double degrees) {

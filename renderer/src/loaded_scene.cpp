@@ -27,14 +27,16 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
 void LoadedScene::check_tables() const {
   const TreeTable* light = m_light.rotated_table();
   if (light == nullptr)
-    throw_input_error(m_description.path, "light: names no \"table\", which product-table needs: a .haar "
-                                          "made by probe2maps --orientations M");
+    throw_input_error(m_description.path,
+                      "light: names no \"table\", which product-table needs: a .haar "
+                      "made by probe2maps --orientations M");
   for (std::size_t i = 0; i < m_materials.size(); ++i) {
     const TreeTable* rolls = m_materials[i].roll_table();
     const std::string where = "materials." + m_materials[i].name();
     if (rolls == nullptr)
-      throw_input_error(m_description.path, where + ": names no \"table\", which product-table needs: a "
-                                                    ".haar made by brdf2maps --roll N");
+      throw_input_error(m_description.path,
+                        where + ": names no \"table\", which product-table needs: a "
+                                ".haar made by brdf2maps --roll N");
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Sampling a reflectance alone: descent in the tree of the nearest θ_r cell, in the reflection frame.
+// Sampling a reflectance alone: descent in the tree of the nearest θ_r cell, in the reflection
+// frame.
 
 #include <renderer/material.h>
 #include <renderer/sampler.h>

@@ -91,7 +91,8 @@ void Material::evaluate_measured(const ShadingPoint& point, std::span<const Vec3
   brdf::DirectionBatch batch;
   std::array<Float4, brdf::batch_capacity> values;
   for (std::size_t i = 0; i < directions.size(); i += brdf::batch_capacity) {
-    batch.count = static_cast<int>(std::min<std::size_t>(brdf::batch_capacity, directions.size() - i));
+    batch.count =
+        static_cast<int>(std::min<std::size_t>(brdf::batch_capacity, directions.size() - i));
     for (int k = 0; k < batch.count; ++k) {
       const Vec3 local_wi = frame.to_local(directions[i + static_cast<std::size_t>(k)]);
       for (int axis = 0; axis < 3; ++axis) {

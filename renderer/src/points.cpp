@@ -28,7 +28,8 @@ std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   return x ^ (x * 0x8d22f6e6U);
 }
 
-/// Second dimension of Sobol's sequence, bit-reversed: Pascal's triangle modulo 2 applied to the index.
+/// Second dimension of Sobol's sequence, bit-reversed: Pascal's triangle modulo 2 applied to the
+/// index.
 std::uint32_t sobol_second_reversed(std::uint32_t index) {
   std::uint32_t result = 0;
   for (std::uint32_t column = 1U; index != 0; index >>= 1U) {

@@ -62,7 +62,8 @@ public:
 private:
   void pixel(int x, int y, const Pass& pass) {
     const std::size_t index = m_film.index(x, y);
-    const Ray ray = m_camera.generate_ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+    const Ray ray =
+        m_camera.generate_ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
     Hit hit;
     if (!m_scene.shapes().intersect(ray, hit)) {
       if (m_scene.description().light.background)
@@ -137,7 +138,8 @@ public:
   Rendering(const LoadedScene& scene, const RenderOptions& options, int width, int height,
             const RenderProgress& progress)
       : m_scene(scene), m_options(options), m_camera(scene.description().camera, width, height),
-        m_progress(progress), m_sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+        m_progress(progress),
+        m_sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     m_result.film = Film(width, height);
   }
 
@@ -160,15 +162,16 @@ private:
   int tiles_down() const { return (m_result.film.height + tile_side - 1) / tile_side; }
 
   void run_pass(const Pass& pass) {
-    const auto count = static_cast<std::size_t>(tiles_across()) * static_cast<std::size_t>(tiles_down());
+    const auto count =
+        static_cast<std::size_t>(tiles_across()) * static_cast<std::size_t>(tiles_down());
     std::vector<TileCost> costs(count);
     std::atomic<std::size_t> done = 0;
     parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
       TileRenderer renderer(m_scene, m_options, m_camera, m_result.film, m_sums);
       for (std::size_t i = begin; i < end; ++i) {
         const int tile = static_cast<int>(i);
-        costs[i] = renderer.render(tile % tiles_across() * tile_side, tile / tiles_across() * tile_side,
-                                   pass);
+        costs[i] = renderer.render(tile % tiles_across() * tile_side,
+                                   tile / tiles_across() * tile_side, pass);
         if (m_progress && m_options.time_limit <= 0)
           m_progress(static_cast<double>(++done) / static_cast<double>(count));
       }
@@ -222,7 +225,8 @@ private:
     }
     RenderStatistics& s = m_result.statistics;
     s.relative_variance_per_sample = lit > 0 ? variance_sum / static_cast<double>(lit) : 0;
-    s.mean_leaves = s.points > 0 ? static_cast<double>(m_leaves) / static_cast<double>(s.points) : 0;
+    s.mean_leaves =
+        s.points > 0 ? static_cast<double>(m_leaves) / static_cast<double>(s.points) : 0;
   }
 
   const LoadedScene& m_scene;
@@ -251,7 +255,8 @@ std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator) 
   const bool follows_product =
       sampler == SamplerKind::Product || sampler == SamplerKind::ProductTable;
   if (estimator == Estimator::Bidirectional && !follows_product)
-    return "the bidirectional estimator needs directions that follow the product: --sampler product or "
+    return "the bidirectional estimator needs directions that follow the product: --sampler "
+           "product or "
            "product-table";
   return std::nullopt;
 }

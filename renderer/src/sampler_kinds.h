@@ -12,5 +12,4 @@ std::unique_ptr<Sampler> make_product_sampler(const Light& light,
                                               const wavelet::AdaptiveOptions& options);
 std::unique_ptr<Sampler> make_table_sampler(const Light& light);
 
-
 } // namespace haarlight::renderer

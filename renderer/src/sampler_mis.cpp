@@ -1,5 +1,6 @@
 // Multiple importance sampling: the first half of a pixel's samples follow the light, the rest the
-// reflectance; every one counts with the mean density of both (balance heuristic, Veach and Guibas 1995).
+// reflectance; every one counts with the mean density of both (balance heuristic, Veach and Guibas
+// 1995).
 
 #include "lobe_sampling.h"
 #include "sampler_kinds.h"

@@ -1,4 +1,5 @@
-// The paper's product: the stored trees of the nearest entries of two tables, multiplied and cached.
+// The paper's product: the stored trees of the nearest entries of two tables, multiplied and
+// cached.
 
 #include "sampler_kinds.h"
 
@@ -87,9 +88,9 @@ private:
   const wavelet::ProductTree& cached(const LightCell& cell, const Material& material, int column,
                                      int roll) {
     const int index = cell.row * m_table.info().columns + cell.column;
-    const std::uint32_t hash = hash_words(hash_words(static_cast<std::uint32_t>(index),
-                                                     static_cast<std::uint32_t>(column)),
-                                          static_cast<std::uint32_t>(roll));
+    const std::uint32_t hash = hash_words(
+        hash_words(static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(column)),
+        static_cast<std::uint32_t>(roll));
     Cached& place = m_cache[hash % cache_size];
     if (place.material == &material && place.light_cell == index && place.column == column &&
         place.roll == roll)

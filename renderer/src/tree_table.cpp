@@ -10,8 +10,9 @@ using wavelet::SetKind;
 TreeTable::TreeTable(const std::string& path, SetKind kind)
     : m_file(std::make_unique<wavelet::TreeSet>(path)), m_info(m_file->info()) {
   if (m_info.kind != kind)
-    throw_input_error(path, kind == SetKind::Brdf ? "holds no BRDF set; one made by brdf2maps is needed"
-                                                  : "holds no light set; one made by probe2maps is needed");
+    throw_input_error(path, kind == SetKind::Brdf
+                                ? "holds no BRDF set; one made by brdf2maps is needed"
+                                : "holds no light set; one made by probe2maps is needed");
   for (int row = 0; row < m_info.rows; ++row)
     for (int column = 0; column < m_info.columns; ++column)
       m_views.push_back(m_file->tree(column, row));
@@ -24,8 +25,8 @@ TreeTable::TreeTable(const wavelet::MapSource& source) : m_info(source.info()) {
   parallel_for(m_owned.size(), [&](std::size_t i) {
     const int index = static_cast<int>(i);
     wavelet::CompressReport report;
-    m_owned[i] = compress_map(source.make(index % m_info.columns, index / m_info.columns),
-                              options, report);
+    m_owned[i] =
+        compress_map(source.make(index % m_info.columns, index / m_info.columns), options, report);
   });
   for (const wavelet::Tree& tree : m_owned)
     m_views.push_back(tree.view());

@@ -40,7 +40,8 @@ Map light_map(int size) {
   Map map(size);
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)
-      map.set(x, y, Rgb(0.2F, 0.3F, 0.4F) * (1.1F + std::sin(0.02F * static_cast<float>(x + 2 * y))));
+      map.set(x, y,
+              Rgb(0.2F, 0.3F, 0.4F) * (1.1F + std::sin(0.02F * static_cast<float>(x + 2 * y))));
   for (int i = 0; i < 40; ++i) {
     const int cx = static_cast<int>(uniform(generator) * static_cast<float>(size - 8));
     const int cy = static_cast<int>(uniform(generator) * static_cast<float>(size - 8));
@@ -94,8 +95,8 @@ RotatedReflectance reflectance_at(const Pyramid& lobes, std::mt19937& generator)
   RotatedReflectance r;
   r.pyramid = &lobes;
   r.reflection = reflection_frame(n, wo);
-  const float c = std::clamp(std::acos(r.reflection.cos_theta_r) * (2 / pi) * theta_cells - 0.5F, 0.0F,
-                             theta_cells - 1.001F);
+  const float c = std::clamp(std::acos(r.reflection.cos_theta_r) * (2 / pi) * theta_cells - 0.5F,
+                             0.0F, theta_cells - 1.001F);
   r.entry0 = static_cast<int>(c);
   r.entry1 = r.entry0 + 1;
   r.blend = c - static_cast<float>(r.entry0);
@@ -111,17 +112,16 @@ void adaptive_product(benchmark::State& state) {
     leaves += product.build(reflectance_at(lobes, generator), {}).leaf_count();
   state.counters["leaves"] =
       benchmark::Counter(static_cast<double>(leaves), benchmark::Counter::kAvgIterations);
-  state.counters["time/leaf"] =
-      benchmark::Counter(static_cast<double>(leaves), benchmark::Counter::kIsRate |
-                                                          benchmark::Counter::kInvert);
+  state.counters["time/leaf"] = benchmark::Counter(
+      static_cast<double>(leaves), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(adaptive_product)->Arg(10)->Arg(300)->Arg(5000);
 
 void sample_64_of_product(benchmark::State& state) {
   AdaptiveProduct product(light_tree().view());
   std::mt19937 generator(1);
-  const ProductTree& tree = product.build(
-      reflectance_at(pyramid(static_cast<int>(state.range(0))), generator), {});
+  const ProductTree& tree =
+      product.build(reflectance_at(pyramid(static_cast<int>(state.range(0))), generator), {});
   std::uniform_real_distribution<float> uniform(0, 1);
   for (auto _ : state)
     for (int i = 0; i < 64; ++i)

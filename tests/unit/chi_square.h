@@ -1,5 +1,6 @@
 #pragma once
-// Whether samples follow the density they claim: Pearson's chi-squared over a grid on the unit square.
+// Whether samples follow the density they claim: Pearson's chi-squared over a grid on the unit
+// square.
 
 #include <wavelet/geometry.h>
 
@@ -11,8 +12,8 @@
 struct ChiSquareResult {
   double statistic = 0;
   int degrees = 0;
-  double limit = 0;    ///< exceeded by chance once in about 10⁶
-  double pdf_sum = 0;  ///< ∫ pdf over the square: 1 if the pdf is normalised
+  double limit = 0;   ///< exceeded by chance once in about 10⁶
+  double pdf_sum = 0; ///< ∫ pdf over the square: 1 if the pdf is normalised
 };
 
 /// @param draw a point of the square from its index; @param pdf per unit square
@@ -57,6 +58,7 @@ inline ChiSquareResult chi_square(int samples, int cells, int taps,
   else
     result.statistic += rare_observed * 1000; // samples where the density says there are none
   const double n = std::max(1, result.degrees - 1);
-  result.limit = n * std::pow(1 - 2 / (9 * n) + 4.75 * std::sqrt(2 / (9 * n)), 3); // Wilson and Hilferty
+  result.limit =
+      n * std::pow(1 - 2 / (9 * n) + 4.75 * std::sqrt(2 / (9 * n)), 3); // Wilson and Hilferty
   return result;
 }

@@ -48,10 +48,7 @@ inline std::string bytes_of_file(const std::string& path) {
 /// A file of the real data, or nothing and a message that the test is skipped.
 inline std::optional<std::string> real_probe(const std::string& name) {
   const char* folder = std::getenv("HAARLIGHT_DATA");
-  const std::filesystem::path source(__FILE__);
-  const std::filesystem::path data = folder != nullptr
-                                         ? std::filesystem::path(folder)
-                                         : source.parent_path() / "../../../shared/data";
+  const std::filesystem::path data(folder != nullptr ? folder : HAARLIGHT_SHARED_DATA);
   const auto path = data / "probes" / name;
   if (std::filesystem::exists(path))
     return path.string();

@@ -22,8 +22,8 @@ using namespace haarlight::renderer;
 
 namespace {
 
-constexpr SamplerKind all_kinds[] = {SamplerKind::Product, SamplerKind::ProductTable, SamplerKind::Light,
-                                     SamplerKind::Brdf, SamplerKind::Mis};
+constexpr SamplerKind all_kinds[] = {SamplerKind::Product, SamplerKind::ProductTable,
+                                     SamplerKind::Light, SamplerKind::Brdf, SamplerKind::Mis};
 
 void write_haar(const std::string& path, const wavelet::MapSource& source) {
   OutputFile file(path);
@@ -130,16 +130,15 @@ double integrand(const LoadedScene& scene, const ShadingPoint& point, const Vec3
 /// ∫ f L cos dω by brute force over the probe's pixels.
 double quadrature(const LoadedScene& scene, const ShadingPoint& point, const probe::Probe& probe) {
   double sum = 0;
-  for_each_point(probe, 4, [&](const Vec3& w, double omega) {
-    sum += omega * integrand(scene, point, w);
-  });
+  for_each_point(probe, 4,
+                 [&](const Vec3& w, double omega) { sum += omega * integrand(scene, point, w); });
   return sum;
 }
 
 constexpr std::size_t sample_count = 4096;
 
-/// The standard error that sample_count independent samples have in truth: what the samples say of it
-/// themselves is far too small where a sampler rarely finds the integrand.
+/// The standard error that sample_count independent samples have in truth: what the samples say of
+/// it themselves is far too small where a sampler rarely finds the integrand.
 double true_error(const LoadedScene& scene, const Sampler& sampler, const ShadingPoint& point,
                   const probe::Probe& probe, double truth) {
   double square = 0;
@@ -191,7 +190,8 @@ TEST_CASE("every sampler with the unbiased estimator agrees with brute-force qua
       }
     }
   CHECK(checks == 120);
-  CHECK(beyond_three <= 3); // of 120 that stray by chance alone, 3 or fewer do with probability 0.9995
+  CHECK(beyond_three <=
+        3); // of 120 that stray by chance alone, 3 or fewer do with probability 0.9995
 }
 
 TEST_CASE("every sampler draws what its pdf says") {
@@ -214,7 +214,9 @@ TEST_CASE("every sampler draws what its pdf says") {
       }
       const auto result = chi_square(
           count, 32, 16,
-          [&](int i) { return wavelet::sphere_to_square(samples[static_cast<std::size_t>(i)].direction); },
+          [&](int i) {
+            return wavelet::sphere_to_square(samples[static_cast<std::size_t>(i)].direction);
+          },
           [&](Vec2 p) {
             return static_cast<double>(sampler->pdf(wavelet::square_to_sphere(p), count) *
                                        wavelet::sphere_area);

@@ -1,6 +1,6 @@
 #pragma once
-// A small independent reader of .haar files, written from libwavelet/FORMAT.md alone: it shares no code
-// with the library, and reads by walking squares instead of links.
+// A small independent reader of .haar files, written from libwavelet/FORMAT.md alone: it shares no
+// code with the library, and reads by walking squares instead of links.
 
 #include <array>
 #include <cmath>
@@ -40,7 +40,8 @@ private:
   std::uint32_t u32(std::size_t at) const {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i)
-      value |= static_cast<std::uint32_t>(static_cast<unsigned char>(m_bytes.at(at + i))) << (8 * i);
+      value |= static_cast<std::uint32_t>(static_cast<unsigned char>(m_bytes.at(at + i)))
+               << (8 * i);
     return value;
   }
   std::uint64_t u64(std::size_t at) const {
@@ -56,21 +57,22 @@ private:
     const std::uint32_t bits = u32(at) & 0xffffU;
     const int exponent = static_cast<int>((bits >> 10U) & 31U);
     const auto fraction = static_cast<float>(bits & 1023U);
-    const float size = exponent == 0 ? std::ldexp(fraction, -24)
-                                     : std::ldexp(1024 + fraction, exponent - 25);
+    const float size =
+        exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
     return (bits & 0x8000U) != 0 ? -size : size;
   }
 
   float coefficient(std::size_t entry, long node, unsigned m, unsigned channel) const {
     const std::size_t n = u32(entry + 16);
     const std::size_t start = u64(entry) + 4 * (levels() + 1 + n);
-    const std::size_t index = (static_cast<std::size_t>(node) * 3 + m) * u32(36) +
-                              (u32(36) == 3 ? channel : 0);
+    const std::size_t index =
+        (static_cast<std::size_t>(node) * 3 + m) * u32(36) + (u32(36) == 3 ? channel : 0);
     return f32(entry + 20) * (u32(40) == 0 ? f16(start + 2 * index) : f32(start + 4 * index));
   }
 
   long child(std::size_t entry, long node, unsigned q) const {
-    const std::uint32_t link = u32(u64(entry) + 4 * (levels() + 1 + static_cast<std::size_t>(node)));
+    const std::uint32_t link =
+        u32(u64(entry) + 4 * (levels() + 1 + static_cast<std::size_t>(node)));
     if (((link >> q) & 1U) == 0)
       return -1;
     long index = link / 16;
@@ -92,8 +94,8 @@ private:
       for (unsigned c = 0; c < 3 && node >= 0; ++c)
         value[c] += sx * coefficient(entry, node, 0, c) + sy * coefficient(entry, node, 1, c) +
                     sx * sy * coefficient(entry, node, 2, c);
-      fill(entry, node >= 0 ? child(entry, node, q) : -1, level + 1, 2 * x + (q & 1U), 2 * y + (q >> 1U),
-           value, pixels);
+      fill(entry, node >= 0 ? child(entry, node, q) : -1, level + 1, 2 * x + (q & 1U),
+           2 * y + (q >> 1U), value, pixels);
     }
   }
 

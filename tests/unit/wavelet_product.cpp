@@ -28,8 +28,9 @@ Map lobe_map(int size, int entry) {
   Map map(size);
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
-      const Vec3 w = square_to_sphere(Vec2((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
-                                           (static_cast<float>(y) + 0.5F) / static_cast<float>(size)));
+      const Vec3 w =
+          square_to_sphere(Vec2((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
+                                (static_cast<float>(y) + 0.5F) / static_cast<float>(size)));
       const float lobe = 30 * std::exp(40 * (w.z() - 1)) + 0.1F * std::max(0.0F, w.z());
       map.set(x, y, Rgb(1.0F, 0.8F, 0.5F) * lobe / static_cast<float>(1 + entry));
     }
@@ -45,9 +46,9 @@ Map dense_product(const Map& light, const Map& reflectance, const SquareSymmetry
   Map result(light.size);
   for (int y = 0; y < light.size; ++y)
     for (int x = 0; x < light.size; ++x) {
-      const Vec2 p = symmetry.to_stored(
-          Vec2((static_cast<float>(x) + 0.5F) / static_cast<float>(light.size),
-               (static_cast<float>(y) + 0.5F) / static_cast<float>(light.size)));
+      const Vec2 p =
+          symmetry.to_stored(Vec2((static_cast<float>(x) + 0.5F) / static_cast<float>(light.size),
+                                  (static_cast<float>(y) + 0.5F) / static_cast<float>(light.size)));
       const auto size = static_cast<float>(light.size);
       const Rgb value =
           reflectance.at(static_cast<int>(p.x() * size), static_cast<int>(p.y() * size));
@@ -71,7 +72,8 @@ TEST_CASE("table products have the integral and the averages of the dense produc
       for (const bool mirrored : {false, true}) {
         const SquareSymmetry symmetry = {turns, mirrored};
         const ProductTree product = TableProduct::build(light.view(), lobe.view(), symmetry);
-        const Map dense = dense_product(light.view().reconstruct(5), lobe.view().reconstruct(5), symmetry);
+        const Map dense =
+            dense_product(light.view().reconstruct(5), lobe.view().reconstruct(5), symmetry);
         const Rgb expected = map_mean(dense).cast<float>();
         CHECK(((product.integral() - expected) / expected).abs().maxCoeff() < 1e-5F);
       }
@@ -88,7 +90,8 @@ TEST_CASE("the density of a table product is the product's luminance") {
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) {
       const double expected = luminance_of_product(light, lobe, x, y) / total;
-      const double pdf = product.pdf((static_cast<float>(x) + 0.5F) / 32, (static_cast<float>(y) + 0.5F) / 32);
+      const double pdf =
+          product.pdf((static_cast<float>(x) + 0.5F) / 32, (static_cast<float>(y) + 0.5F) / 32);
       if (expected > 0.05) // above the floors
         CHECK(pdf == Approx(expected).epsilon(0.02));
       CHECK(pdf > 0);
@@ -122,7 +125,8 @@ TEST_CASE("a pyramid's look-ups are the tree's averages at square centres, at ev
                                               (static_cast<float>(y) + 0.5F) * side);
           const Rgb average = views[entry].average(level, x, y);
           if (std::abs(value[0] - average[0]) > 0.005F * std::abs(average[0]) + 1e-4F)
-            FAIL("level " << level << " at " << x << ", " << y << ": " << value[0] << ", not " << average[0]);
+            FAIL("level " << level << " at " << x << ", " << y << ": " << value[0] << ", not "
+                          << average[0]);
         }
   CHECK(pyramid.lookup(0, 0, 0.5F, 0.5F)[3] > 1); // the lobe: a deviation far above the mean
 }
@@ -166,7 +170,8 @@ TEST_CASE("adaptive products integrate what dense quadrature integrates") {
     double expected = 0;
     for (int y = 0; y < 256; ++y)
       for (int x = 0; x < 256; ++x) {
-        const Vec3 w = square_to_sphere(Vec2((static_cast<float>(x) + 0.5F) / 256, (static_cast<float>(y) + 0.5F) / 256));
+        const Vec3 w = square_to_sphere(
+            Vec2((static_cast<float>(x) + 0.5F) / 256, (static_cast<float>(y) + 0.5F) / 256));
         const float z = reflectance.reflection.frame.n.dot(w);
         if (n.dot(w) > -0.02F) // the map knows no horizon of its own; the builder cuts just below
           expected += luminance(light.at(x, y) * Rgb(1.0F, 0.8F, 0.5F)) * 0.875 *
@@ -277,7 +282,8 @@ TEST_CASE("points and quadrants are turned alike") {
       for (unsigned q = 0; q < 4; ++q) {
         const Vec2 centre((q & 1U) != 0 ? 0.75F : 0.25F, (q & 2U) != 0 ? 0.75F : 0.25F);
         const Vec2 stored = symmetry.to_stored(centre);
-        CHECK(symmetry.to_stored(q) == (stored.x() > 0.5F ? 1U : 0U) + (stored.y() > 0.5F ? 2U : 0U));
+        CHECK(symmetry.to_stored(q) ==
+              (stored.x() > 0.5F ? 1U : 0U) + (stored.y() > 0.5F ? 2U : 0U));
       }
     }
 }

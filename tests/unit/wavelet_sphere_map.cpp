@@ -33,7 +33,8 @@ TEST_CASE("trigonometry keeps to its error bounds") {
     float c = 0;
     const float angle = 6.3F * y;
     sine_cosine(angle, s, c);
-    sine = std::max({sine, std::abs(s - std::sin(double(angle))), std::abs(c - std::cos(double(angle)))});
+    sine = std::max(
+        {sine, std::abs(s - std::sin(double(angle))), std::abs(c - std::cos(double(angle)))});
   }
   CHECK(tangent < 4e-7);
   CHECK(cosine < 4e-7);
@@ -64,7 +65,8 @@ TEST_CASE("equal squares cover equal solid angles") {
   const int n = 640000;
   for (int i = 0; i < n; ++i) {
     const Vec2 p = sphere_to_square(random_direction(generator));
-    ++counts[8 * std::min(7, static_cast<int>(8 * p.y())) + std::min(7, static_cast<int>(8 * p.x()))];
+    ++counts[8 * std::min(7, static_cast<int>(8 * p.y())) +
+             std::min(7, static_cast<int>(8 * p.x()))];
   }
   double chi_square = 0;
   for (const int count : counts)

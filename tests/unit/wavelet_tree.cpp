@@ -51,8 +51,8 @@ TEST_CASE("halves round to nearest even and come back exactly") {
   CHECK(half_to_float(0x3c00) == 1.0F);
   CHECK(half_to_float(0x0001) == 0x1p-24F);
   CHECK(half_to_float(0xfbff) == -65504.0F);
-  CHECK(float_to_half(1.0F + 0x1p-11F) == 0x3c00);          // a tie goes to the even neighbour
-  CHECK(float_to_half(1.0F + 3 * 0x1p-11F) == 0x3c02);      // and here to the other one
+  CHECK(float_to_half(1.0F + 0x1p-11F) == 0x3c00);     // a tie goes to the even neighbour
+  CHECK(float_to_half(1.0F + 3 * 0x1p-11F) == 0x3c02); // and here to the other one
   CHECK(float_to_half(1.0F + 0x1p-11F + 0x1p-20F) == 0x3c01);
 }
 
@@ -127,7 +127,8 @@ TEST_CASE("sparse maps make small trees, constant ones none") {
   CHECK(report.relative_l2_error() == 0);
 }
 
-TEST_CASE("the variance criterion ranks a bump on a dim ground before the same bump on a bright one") {
+TEST_CASE(
+    "the variance criterion ranks a bump on a dim ground before the same bump on a bright one") {
   Map map(64);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)

@@ -10,8 +10,8 @@
 #include <catch2/catch.hpp>
 
 #include <cstdio>
-#include <functional>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 using namespace haarlight;
@@ -62,11 +62,13 @@ void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-template <class T> void put(std::string& bytes, std::size_t at, T value) {
+template <class T>
+void put(std::string& bytes, std::size_t at, T value) {
   bytes.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-template <class T> T get(const std::string& bytes, std::size_t at) {
+template <class T>
+T get(const std::string& bytes, std::size_t at) {
   T value;
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
@@ -221,10 +223,21 @@ TEST_CASE("every broken rule is refused") {
       {"reserved", [](auto& b) { put(b, 104, std::uint64_t{1}); }, true},
       {"padding", [](auto& b) { b[121] = 1; }, true},
       {"header checksum", [](auto& b) { b[24] = 1; }, false},
-      {"index offset", [](auto& b) { put(b, 64, std::uint64_t{1} << 40U); put(b, 112, checksum(b, 0, 112)); }, false},
+      {"index offset",
+       [](auto& b) {
+         put(b, 64, std::uint64_t{1} << 40U);
+         put(b, 112, checksum(b, 0, 112));
+       },
+       false},
       {"index checksum", [=](auto& b) { b[index + 25] = 1; }, false},
       {"text checksum", [](auto& b) { b[b.size() - 2] = '?'; }, false},
-      {"tree offset", [=](auto& b) { put(b, index, tree + 8); put(b, 72, checksum(b, index, 80)); put(b, 112, checksum(b, 0, 112)); }, false},
+      {"tree offset",
+       [=](auto& b) {
+         put(b, index, tree + 8);
+         put(b, 72, checksum(b, index, 80));
+         put(b, 112, checksum(b, 0, 112));
+       },
+       false},
       {"node count", [=](auto& b) { put(b, index + 16, 1U << 28U); }, true},
       {"too many nodes", [=](auto& b) { put(b, index + 16, 1U << 27U); }, true},
       {"scale", [=](auto& b) { put(b, index + 20, 0.0F); }, true},
@@ -234,9 +247,15 @@ TEST_CASE("every broken rule is refused") {
       {"level table start", [=](auto& b) { put(b, tree, 1U); }, true},
       {"level table descends", [=](auto& b) { put(b, tree + 8, 0U); }, true},
       {"level table end", [=](auto& b) { put(b, tree + 12, 4U); }, true},
-      {"first child", [=](auto& b) { put(b, tree + 16, get<std::uint32_t>(b, tree + 16) + 16); }, true},
-      {"child mask", [=](auto& b) { put(b, tree + 16, get<std::uint32_t>(b, tree + 16) ^ 1U); }, true},
-      {"coefficient", [=](auto& b) { put(b, tree + 16 + 4 * get<std::uint32_t>(b, index + 16), std::uint16_t{0x7c00}); }, true},
+      {"first child", [=](auto& b) { put(b, tree + 16, get<std::uint32_t>(b, tree + 16) + 16); },
+       true},
+      {"child mask", [=](auto& b) { put(b, tree + 16, get<std::uint32_t>(b, tree + 16) ^ 1U); },
+       true},
+      {"coefficient",
+       [=](auto& b) {
+         put(b, tree + 16 + 4 * get<std::uint32_t>(b, index + 16), std::uint16_t{0x7c00});
+       },
+       true},
   };
   for (const Break& b : breaks) {
     std::string bytes = good;

@@ -52,8 +52,8 @@ struct WorldLevel {
 };
 
 /// The maps of a probe. make() is the world map, or the map of one cell of ω_r, averaged over the
-/// cell; each is made from the world map,
-/// averaged down, so memory stays at that and one map per thread.
+/// cell. The latter are made from the world map averaged down to their resolution, so that memory
+/// stays at that and one map for each thread.
 class ProbeMaps : public wavelet::MapSource {
 public:
   /// @param source what is known of the probe's origin, the first entries of the set's provenance

@@ -21,15 +21,16 @@ struct CompressOptions {
 struct CompressReport {
   std::uint64_t total_coefficients = 0; ///< 4^levels − 1 per map; an RGB triple counts as one
   std::uint64_t kept_coefficients = 0;
-  std::uint64_t nodes = 0;          ///< squares stored
-  std::uint64_t bytes = 0;          ///< of the file
-  double energy = 0;                ///< Σ over maps of ∫∫ F², colours weighted by luminance
-  double squared_error = 0;         ///< the same of F − F'
-  double peak = 0;                  ///< largest |value| of any channel
-  double largest_error = 0;         ///< largest |F − F'| of any channel
-  double mass = 0;                  ///< Σ over maps of ∫∫ |F|, luminance
-  double negative_mass = 0;         ///< Σ over maps of ∫∫ max(0, −F'), luminance
-  std::optional<Conservation> conservation; ///< of the maps, before compression, where the source knows
+  std::uint64_t nodes = 0;  ///< squares stored
+  std::uint64_t bytes = 0;  ///< of the file
+  double energy = 0;        ///< Σ over maps of ∫∫ F², colours weighted by luminance
+  double squared_error = 0; ///< the same of F − F'
+  double peak = 0;          ///< largest |value| of any channel
+  double largest_error = 0; ///< largest |F − F'| of any channel
+  double mass = 0;          ///< Σ over maps of ∫∫ |F|, luminance
+  double negative_mass = 0; ///< Σ over maps of ∫∫ max(0, −F'), luminance
+  std::optional<Conservation>
+      conservation; ///< of the maps, before compression, where the source knows
 
   double relative_l2_error() const;
   double relative_linf_error() const;

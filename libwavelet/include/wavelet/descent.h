@@ -1,7 +1,7 @@
 #pragma once
 // Hierarchical sampling: a point of the square is led down quadrant by quadrant, each chosen in
-// proportion to its weight, so that well-spread input points stay well spread (Clarberg et al. 2005,
-// "Wavelet importance sampling").
+// proportion to its weight, so that well-spread input points stay well spread (Clarberg et al.
+// 2005, "Wavelet importance sampling").
 
 #include <wavelet/geometry.h>
 #include <wavelet/tree.h>
@@ -14,7 +14,7 @@ namespace haarlight::wavelet {
 struct Descent {
   float u1 = 0; ///< in [0, 1)
   float u2 = 0;
-  float x = 0;      ///< lower corner of the square
+  float x = 0; ///< lower corner of the square
   float y = 0;
   float side = 1;
   float pdf = 1; ///< density of the square's points, per unit square
@@ -24,8 +24,8 @@ namespace detail {
 
 inline constexpr float below_one = 0x1.fffffep-1F;
 
-/// Chooses between two with weights `first` and `second`, not both 0; rescales u. Returns 1 for the second.
-/// Free of branches, which chance would mispredict half of the time.
+/// Chooses between two with weights `first` and `second`, not both 0; rescales u. Returns 1 for the
+/// second. Free of branches, which chance would mispredict half of the time.
 inline unsigned choose(float& u, float first, float second) {
   const float t = u * (first + second);
   const bool beyond = t >= first;
@@ -84,8 +84,8 @@ struct TreeDensity {
 
 namespace detail {
 
-/// Share of a square's average that each of its quadrants gets at least: thresholded trees go negative,
-/// and what they lost must stay reachable.
+/// Share of a square's average that each of its quadrants gets at least: thresholded trees go
+/// negative, and what they lost must stay reachable.
 inline constexpr float quadrant_floor = 1.0F / 256;
 
 /// Clamped weights of the four quadrants.
@@ -97,7 +97,8 @@ inline Float4 quadrant_weights(const std::array<Float4, 4>& children, Float4 wei
   return larger(w, Float4{floor, floor, floor, floor});
 }
 
-template <class Step> void walk_density(TreeDensity density, Step step) {
+template <class Step>
+void walk_density(TreeDensity density, Step step) {
   while (density.node != no_node) {
     const auto children = density.tree->details(density.node).children(density.mean);
     const unsigned q = step(quadrant_weights(children, density.weights));

@@ -9,10 +9,12 @@
 namespace haarlight {
 
 /// A regular file mapped into memory. Pages are read when touched and shared between processes. A
-/// file replaced by rename while mapped stays as it was; one truncated in place must not be touched.
+/// file replaced by rename while mapped stays as it was; one truncated in place must not be
+/// touched.
 class InputFile {
 public:
-  /// @throws Error(Input) if the file is missing, unreadable, or no regular file (a directory, FIFO …)
+  /// @throws Error(Input) if the file is missing, unreadable, or no regular file (a directory, FIFO
+  /// …)
   explicit InputFile(const std::string& path);
   ~InputFile();
   InputFile(InputFile&& other) noexcept;

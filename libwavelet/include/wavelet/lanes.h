@@ -36,9 +36,21 @@ inline float power_of_two(int exponent) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(exponent + 127) << 23U);
 }
 
-template <class F> F broadcast(float x) { return F{} + x; }
-template <class F> F absolute(F x) { return select(x < broadcast<F>(0), -x, x); }
-template <class F> F larger(F a, F b) { return select(a > b, a, b); }
-template <class F> F smaller(F a, F b) { return select(a < b, a, b); }
+template <class F>
+F broadcast(float x) {
+  return F{} + x;
+}
+template <class F>
+F absolute(F x) {
+  return select(x < broadcast<F>(0), -x, x);
+}
+template <class F>
+F larger(F a, F b) {
+  return select(a > b, a, b);
+}
+template <class F>
+F smaller(F a, F b) {
+  return select(a < b, a, b);
+}
 
 } // namespace haarlight

@@ -21,7 +21,8 @@ struct Map {
   std::vector<float> rgb;
 
   explicit Map(int pixels = 0)
-      : size(pixels), rgb(3 * static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels)) {}
+      : size(pixels), rgb(3 * static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels)) {
+  }
 
   std::size_t offset(int x, int y) const {
     return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
@@ -44,21 +45,21 @@ enum class SetKind : std::uint32_t {
 enum class Fold : std::uint32_t {
   None = 0,
   Rotations = 1, ///< rolls φ ∈ [0, π/2): roll φ + π/2 is the map turned by 90°
-  Mirrors = 2    ///< rolls φ ∈ [0, π/4]: roll π/2 − φ is the map mirrored in the diagonal u = v
+  Mirrors = 2 ///< rolls φ ∈ [0, π/4]: roll π/2 − φ is the map mirrored in the diagonal u = v
 };
 
 /// Everything that is known of a set besides its pixels.
 struct SetInfo {
   SetKind kind = SetKind::Generic;
-  int size = 0;     ///< pixels along one side of a map, a power of two
-  int columns = 1;  ///< stored maps along the first index
-  int rows = 1;     ///< stored maps along the second index
-  int rolls = 1;    ///< BRDF sets: rolls over the full circle, of which `rows` are stored; else 1
+  int size = 0;    ///< pixels along one side of a map, a power of two
+  int columns = 1; ///< stored maps along the first index
+  int rows = 1;    ///< stored maps along the second index
+  int rolls = 1;   ///< BRDF sets: rolls over the full circle, of which `rows` are stored; else 1
   Fold fold = Fold::None;
-  bool cosine = false;       ///< BRDF sets: pixels include max(0, n·ω)
-  bool world_frame = false;  ///< light sets: one map, local axes = world axes
-  std::string frame;         ///< the frame convention in words
-  std::string units;         ///< of a pixel
+  bool cosine = false;      ///< BRDF sets: pixels include max(0, n·ω)
+  bool world_frame = false; ///< light sets: one map, local axes = world axes
+  std::string frame;        ///< the frame convention in words
+  std::string units;        ///< of a pixel
   Provenance provenance;
 
   int map_count() const { return columns * rows; }

@@ -1,10 +1,10 @@
 #pragma once
-// Products of a light tree and a reflectance, as something to sample: a quadtree over the light's square
-// whose leaves are squares on which one factor counts as constant, so that below them the product has
-// the detail of the light tree.
+// Products of a light tree and a reflectance, as something to sample: a quadtree over the light's
+// square whose leaves are squares on which one factor counts as constant, so that below them the
+// product has the detail of the light tree.
 //
-// The density follows the luminance of the product, not the product of luminances: a leaf weighs the
-// light's channels by luminance weight times reflectance.
+// The density follows the luminance of the product, not the product of luminances: a leaf weighs
+// the light's channels by luminance weight times reflectance.
 
 #include <wavelet/descent.h>
 #include <wavelet/pyramid.h>
@@ -16,8 +16,8 @@
 
 namespace haarlight::wavelet {
 
-/// Four quadrants q = qx + 2 qy: the product's average weight over each, and what lies there: a node, or
-/// the leaf ~child.
+/// Four quadrants q = qx + 2 qy: the product's average weight over each, and what lies there: a
+/// node, or the leaf ~child.
 struct ProductNode {
   Float4 weights = {};
   std::int32_t child[4] = {-1, -1, -1, -1};
@@ -72,12 +72,13 @@ private:
   Rgb m_integral = Rgb::Zero();
 };
 
-/// A reflectance set's entry pair seen from a light's frame: what the product at one shading point needs.
+/// A reflectance set's entry pair seen from a light's frame: what the product at one shading point
+/// needs.
 struct RotatedReflectance {
   const Pyramid* pyramid = nullptr;
-  int entry0 = 0;   ///< two neighbouring entries (θ_r) …
+  int entry0 = 0; ///< two neighbouring entries (θ_r) …
   int entry1 = 0;
-  float blend = 0;  ///< … and the weight of the second
+  float blend = 0;            ///< … and the weight of the second
   ReflectionFrame reflection; ///< the pyramid's local frame, in the light's axes
 };
 
@@ -87,11 +88,12 @@ struct AdaptiveOptions {
   int max_leaves = 4096;
 };
 
-/// Builds products adaptively from the root of the light tree: the reflectance's average over a square is
-/// looked up in its own frame at the same level (the domain map is equal-area, so levels match), and
-/// squares are split where weight times the reflectance's relative variance is large. Clarberg and
-/// Akenine-Möller 2008 ("Practical product importance sampling for direct illumination") do this with
-/// point evaluations; averages overlook no lobe. Reused from point to point, it allocates nothing.
+/// Builds products adaptively from the root of the light tree: the reflectance's average over a
+/// square is looked up in its own frame at the same level (the domain map is equal-area, so levels
+/// match), and squares are split where weight times the reflectance's relative variance is large.
+/// Clarberg and Akenine-Möller 2008 ("Practical product importance sampling for direct
+/// illumination") do this with point evaluations; averages overlook no lobe. Reused from point to
+/// point, it allocates nothing.
 class AdaptiveProduct {
 public:
   /// @param light a tree in the frame that reflections are given in; its arrays must outlive this
@@ -134,8 +136,8 @@ private:
   };
 
   static constexpr std::uint32_t no_place = 0xffffffffU;
-  /// Families are worked on this many at a time, stage by stage: a stage's steps are independent of each
-  /// other, so that the processor overlaps them.
+  /// Families are worked on this many at a time, stage by stage: a stage's steps are independent of
+  /// each other, so that the processor overlaps them.
   static constexpr std::size_t batch_size = 16;
 
   void start();
@@ -154,8 +156,8 @@ private:
   RotatedReflectance m_reflectance;
   Float4 m_floor = {};
   std::vector<Square> m_squares;
-  std::vector<std::uint32_t> m_fresh;  ///< squares not yet held against the pass's threshold
-  std::vector<std::uint32_t> m_added;  ///< squares made meanwhile
+  std::vector<std::uint32_t> m_fresh; ///< squares not yet held against the pass's threshold
+  std::vector<std::uint32_t> m_added; ///< squares made meanwhile
   std::vector<Family> m_families;
   std::vector<std::int32_t> m_parent_slots;
   double m_weight = 0;
@@ -163,9 +165,9 @@ private:
   ProductTree m_product;
 };
 
-/// The exact product of two stored trees in one frame, by walking both at once: where one tree ends its
-/// factor is constant, and the product is the other's. Gives the averages that OPPRODUCT of the paper
-/// (Table 4) finds through coefficient sums.
+/// The exact product of two stored trees in one frame, by walking both at once: where one tree ends
+/// its factor is constant, and the product is the other's. Gives the averages that OPPRODUCT of the
+/// paper (Table 4) finds through coefficient sums.
 class TableProduct {
 public:
   /// @param light       its arrays must outlive the result

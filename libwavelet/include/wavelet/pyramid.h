@@ -1,10 +1,11 @@
 #pragma once
 // Averages over squares of any level, looked up in constant time.
 //
-// A tree gives the average over a square by descent; an adaptive product asks for hundreds of them per
-// shading point, each at an arbitrary place and level, in two neighbouring trees. The pyramid holds them
-// ready: per tree and level a grid of averages, cut into tiles of 8 × 8 squares that exist only where the
-// tree has wavelets, interpolated bilinearly between square centres and across the octahedral seams.
+// A tree gives the average over a square by descent; an adaptive product asks for hundreds of them
+// per shading point, each at an arbitrary place and level, in two neighbouring trees. The pyramid
+// holds them ready: per tree and level a grid of averages, cut into tiles of 8 × 8 squares that
+// exist only where the tree has wavelets, interpolated bilinearly between square centres and across
+// the octahedral seams.
 
 #include <wavelet/lanes.h>
 #include <wavelet/tree.h>
@@ -18,8 +19,9 @@
 
 namespace haarlight::wavelet {
 
-/// Read-only and safe to share between threads once built. Values are rounded to 8 bits of mantissa:
-/// good for a sampling density, which is exact whatever it is, and for integrals to a few 0.1 %.
+/// Read-only and safe to share between threads once built. Values are rounded to 8 bits of
+/// mantissa: good for a sampling density, which is exact whatever it is, and for integrals to a few
+/// 0.1 %.
 class Pyramid {
 public:
   /// @param trees of one set: same number of levels
@@ -32,8 +34,8 @@ public:
 
   std::size_t bytes() const { return m_texels.size() * 2 + m_pages.size() * 4; }
 
-  /// Lanes R, G, B: the average over a square of side 2^-level centred on (u, v). Lane 3: the standard
-  /// deviation of luminance within such a square.
+  /// Lanes R, G, B: the average over a square of side 2^-level centred on (u, v). Lane 3: the
+  /// standard deviation of luminance within such a square.
   /// @param level 0 … levels(); @param u,v in [0, 1]
   Float4 lookup(int entry, int level, float u, float v) const;
 
@@ -105,7 +107,8 @@ inline Pyramid::Places Pyramid::places(int level, Float4 u, Float4 v) const {
   result.level = level;
   result.u = u;
   result.v = v;
-  result.page = (ty << log) + tx + static_cast<int>(m_level_offset[static_cast<std::size_t>(level)]);
+  result.page =
+      (ty << log) + tx + static_cast<int>(m_level_offset[static_cast<std::size_t>(level)]);
   result.texel = 4 * (stored_side * (iy - (ty << tile_bits)) + ix - (tx << tile_bits));
   result.fx = x - __builtin_convertvector(ix, Float4);
   result.fy = y - __builtin_convertvector(iy, Float4);
@@ -120,8 +123,8 @@ inline Float4 Pyramid::interpolate(std::uint32_t page, int texel, float fx, floa
 }
 
 inline Float4 Pyramid::lookup(int entry, const Places& p, int lane) const {
-  const std::uint32_t page =
-      m_pages[static_cast<std::size_t>(entry) * m_pages_per_entry + static_cast<std::size_t>(p.page[lane])];
+  const std::uint32_t page = m_pages[static_cast<std::size_t>(entry) * m_pages_per_entry +
+                                     static_cast<std::size_t>(p.page[lane])];
   if ((page & absent) != 0)
     return lookup(entry, static_cast<int>(page & 15U), p.u[lane], p.v[lane]);
   return interpolate(page, p.texel[lane], p.fx[lane], p.fy[lane]);

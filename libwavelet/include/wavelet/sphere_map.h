@@ -2,9 +2,9 @@
 // The one map between the unit square and the sphere: octahedral equal-area (Clarberg 2008, "Fast
 // equal-area mapping of the (hemi)sphere using SIMD").
 //
-// Square coordinates (u, v) lie in [0, 1]²; u runs with the columns of a map and v with its rows, row
-// 0 first. The centre (½, ½) is local +z, the four corners are local −z, u grows towards +x and v
-// towards +y. Equal area: dω = 4π du dv, hence pdf_ω = pdf_uv / 4π.
+// Square coordinates (u, v) lie in [0, 1]²; u runs with the columns of a map and v with its rows,
+// row 0 first. The centre (½, ½) is local +z, the four corners are local −z, u grows towards +x and
+// v towards +y. Equal area: dω = 4π du dv, hence pdf_ω = pdf_uv / 4π.
 
 #include <wavelet/geometry.h>
 #include <wavelet/trigonometry.h>
@@ -15,7 +15,8 @@ namespace haarlight::wavelet {
 inline constexpr float sphere_area = 4.0F * pi;
 
 /// Direction of the square point (u, v), as x, y, z; F is float or Float4.
-template <class F> void square_to_sphere(F u, F v, F& x, F& y, F& z) {
+template <class F>
+void square_to_sphere(F u, F v, F& x, F& y, F& z) {
   const F zero = broadcast<F>(0);
   const F a = 2.0F * u - 1.0F;
   const F b = 2.0F * v - 1.0F;
@@ -37,7 +38,8 @@ template <class F> void square_to_sphere(F u, F v, F& x, F& y, F& z) {
 }
 
 /// Square point of the unit direction (x, y, z); F is float or Float4.
-template <class F> void sphere_to_square(F x, F y, F z, F& u, F& v) {
+template <class F>
+void sphere_to_square(F x, F y, F z, F& u, F& v) {
   const F zero = broadcast<F>(0);
   const F ax = absolute(x);
   const F ay = absolute(y);

@@ -8,8 +8,8 @@
 namespace haarlight::wavelet {
 
 /// Where a point of a turned map lies in the stored one: first `turns` quarter turns back about the
-/// centre, then, if `mirrored`, a mirroring in the diagonal u = v. A quarter turn of a map turns the
-/// local frame's content by +90° about z.
+/// centre, then, if `mirrored`, a mirroring in the diagonal u = v. A quarter turn of a map turns
+/// the local frame's content by +90° about z.
 struct SquareSymmetry {
   int turns = 0; ///< 0 … 3
   bool mirrored = false;

@@ -1,15 +1,16 @@
 #pragma once
-// The orthonormal, non-standard two-dimensional Haar transform of a square image, in place by lifting.
+// The orthonormal, non-standard two-dimensional Haar transform of a square image, in place by
+// lifting.
 //
-// After haar_forward() the image holds, instead of pixels, the differences of averages: for the square
-// s = (l, x, y) of side 2^-l, with k = N / 2^(l+1),
+// After haar_forward() the image holds, instead of pixels, the differences of averages: for the
+// square s = (l, x, y) of side 2^-l, with k = N / 2^(l+1),
 //     m = 1 (x-difference)        at pixel (2kx + k, 2ky)
 //     m = 2 (y-difference)        at pixel (2kx,     2ky + k)
 //     m = 3 (diagonal difference) at pixel (2kx + k, 2ky + k)
 // and the average of the whole image at (0, 0). A stored value d relates to the coefficient of the
-// L2-normalised wavelet on the unit square by F^m_s = 2^-l d: it is in the unit of the pixels, and the
-// average of child quadrant (qx, qy) is F(s) + Σ_m sign(m, qx, qy) d_m with
-// sign(1) = 1 − 2qx, sign(2) = 1 − 2qy, sign(3) = sign(1)·sign(2).
+// L2-normalised wavelet on the unit square by F^m_s = 2^-l d: it is in the unit of the pixels, and
+// the average of child quadrant (qx, qy) is F(s) + Σ_m sign(m, qx, qy) d_m with sign(1) = 1 − 2qx,
+// sign(2) = 1 − 2qy, sign(3) = sign(1)·sign(2).
 
 #include <cstddef>
 

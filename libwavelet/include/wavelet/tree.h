@@ -2,9 +2,9 @@
 // Sparse Haar trees of RGB functions on the unit square.
 //
 // A node is a square s = (l, x, y) that has wavelets; it holds the three differences d_m of
-// <wavelet/transform.h>. Nodes lie in one flat array, breadth first and in Morton order within a level,
-// with 4-bit child masks: a missing child means that the function is constant there. A node's children
-// follow each other, quadrant q = qx + 2 qy ascending.
+// <wavelet/transform.h>. Nodes lie in one flat array, breadth first and in Morton order within a
+// level, with 4-bit child masks: a missing child means that the function is constant there. A
+// node's children follow each other, quadrant q = qx + 2 qy ascending.
 
 #include <wavelet/half.h>
 #include <wavelet/lanes.h>
@@ -60,12 +60,12 @@ inline constexpr std::uint32_t no_node = 0xffffffffU;
 
 /// A tree somewhere in memory (usually in a mapped file); cheap to copy, owns nothing.
 struct TreeView {
-  int levels = 0;                     ///< squares of the finest wavelets have side 2^-(levels-1)
-  int channels = 3;                   ///< 3 = RGB, 1 = luminance, read back as a grey RGB
+  int levels = 0;   ///< squares of the finest wavelets have side 2^-(levels-1)
+  int channels = 3; ///< 3 = RGB, 1 = luminance, read back as a grey RGB
   CoefficientType type = CoefficientType::Half;
   std::uint32_t node_count = 0;
-  float scale = 1;                    ///< stored coefficients times this are differences
-  Rgb mean = Rgb::Zero();             ///< average over the whole square, F⁰_root
+  float scale = 1;                      ///< stored coefficients times this are differences
+  Rgb mean = Rgb::Zero();               ///< average over the whole square, F⁰_root
   const std::uint32_t* links = nullptr; ///< per node: index of its first child << 4 | child mask
   const std::byte* coefficients = nullptr;
 
@@ -120,7 +120,8 @@ inline Details TreeView::details(std::uint32_t node) const {
   return result;
 }
 
-/// A tree that owns its arrays; coefficients are padded by at least 8 bytes so that lanes may be loaded.
+/// A tree that owns its arrays; coefficients are padded by at least 8 bytes so that lanes may be
+/// loaded.
 struct Tree {
   int levels = 0;
   int channels = 3;

@@ -12,7 +12,8 @@ namespace haarlight {
 inline constexpr float pi = std::numbers::pi_v<float>;
 
 /// Angle of the tangent t, |t| ≤ 1. Error below 1e-7.
-template <class F> F arctangent_unit(F t) {
+template <class F>
+F arctangent_unit(F t) {
   const F z = t * t;
   F p = z * 2.766283501e-03F - 1.573124912e-02F;
   p = p * z + 4.213762359e-02F;
@@ -26,14 +27,17 @@ template <class F> F arctangent_unit(F t) {
 }
 
 /// Sine and cosine of an angle in [−π/4, π/4]. Error below 1e-7.
-template <class F> void sine_cosine_octant(F angle, F& sine, F& cosine) {
+template <class F>
+void sine_cosine_octant(F angle, F& sine, F& cosine) {
   const F z = angle * angle;
   sine = (((z * -1.950390425e-04F + 8.332035786e-03F) * z - 1.666665067e-01F) * z + 1.0F) * angle;
-  cosine = (((z * 2.437983124e-05F - 1.388661800e-03F) * z + 4.166661669e-02F) * z - 0.5F) * z + 1.0F;
+  cosine =
+      (((z * 2.437983124e-05F - 1.388661800e-03F) * z + 4.166661669e-02F) * z - 0.5F) * z + 1.0F;
 }
 
 /// Angle of the point (x, y) from the x axis, in (−π, π]; 0 at the origin. Error below 4e-7.
-template <class F> F arctangent(F y, F x) {
+template <class F>
+F arctangent(F y, F x) {
   const F zero = broadcast<F>(0);
   const F ax = absolute(x);
   const F ay = absolute(y);
@@ -47,14 +51,16 @@ template <class F> F arctangent(F y, F x) {
 
 /// Angle whose cosine is x, in [0, π]; x is clamped to [−1, 1]. Error below 4e-7, but next to
 /// |x| = 1, where float itself resolves no better than 3e-4.
-template <class F> F arccosine(F x) {
+template <class F>
+F arccosine(F x) {
   const F one = broadcast<F>(1);
   const F c = smaller(larger(x, -one), one);
   return arctangent(square_root((one - c) * (one + c)), c);
 }
 
 /// Sine and cosine of any angle within a few turns. Error below 5e-7.
-template <class F> void sine_cosine(F angle, F& sine, F& cosine) {
+template <class F>
+void sine_cosine(F angle, F& sine, F& cosine) {
   const F zero = broadcast<F>(0);
   const F quarters = angle * (2.0F / pi);
   const F rounder = select(quarters < zero, broadcast<F>(-12582912.0F), broadcast<F>(12582912.0F));

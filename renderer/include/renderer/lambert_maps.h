@@ -5,7 +5,8 @@
 
 namespace haarlight::renderer {
 
-/// Maps of albedo/π · max(0, n·ω) in the reflection frame, as brdf::BrdfMaps makes for measured ones.
+/// Maps of albedo/π · max(0, n·ω) in the reflection frame, as brdf::BrdfMaps makes for measured
+/// ones.
 class LambertMaps : public wavelet::MapSource {
 public:
   /// @param albedo per channel, in [0, 1]

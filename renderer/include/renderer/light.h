@@ -11,8 +11,8 @@
 
 namespace haarlight::renderer {
 
-/// All directions are in the light's own frame: the probe's axes, turned against the world about +y by
-/// the scene's "rotate". With a tree alone, the tree is the truth.
+/// All directions are in the light's own frame: the probe's axes, turned against the world about +y
+/// by the scene's "rotate". With a tree alone, the tree is the truth.
 class Light {
 public:
   /// @throws Error(Input) as the files' readers do
@@ -21,7 +21,8 @@ public:
   /// Radiance from a unit direction.
   Rgb radiance(const Vec3& w) const;
 
-  /// Makes what samplers use, if not there yet: the world-frame tree; the distribution to draw from.
+  /// Makes what samplers use, if not there yet: the world-frame tree; the distribution to draw
+  /// from.
   void need_tree();
   void need_distribution();
 

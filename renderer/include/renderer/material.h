@@ -1,5 +1,6 @@
 #pragma once
-// What a surface does to light: its true reflectance, and the trees that stand for it when sampling.
+// What a surface does to light: its true reflectance, and the trees that stand for it when
+// sampling.
 
 #include <renderer/scene.h>
 #include <renderer/tree_table.h>
@@ -15,27 +16,29 @@ namespace haarlight::renderer {
 
 /// A surface point as samplers see it; all directions in one frame.
 struct ShadingPoint {
-  Vec3 n;  ///< unit normal, on the viewer's side
-  Vec3 wo; ///< unit direction to the viewer, n·wo > 0
+  Vec3 n;                     ///< unit normal, on the viewer's side
+  Vec3 wo;                    ///< unit direction to the viewer, n·wo > 0
   ReflectionFrame reflection; ///< of n and wo
 };
 
 ShadingPoint shading_point(const Vec3& n, const Vec3& wo);
 
-/// One material of a scene, loaded. What is not given as a file is made: trees from the measured table,
-/// or from the Lambertian; with trees alone, they are the truth.
+/// One material of a scene, loaded. What is not given as a file is made: trees from the measured
+/// table, or from the Lambertian; with trees alone, they are the truth.
 class Material {
 public:
   /// @throws Error(Input) as the files' readers do
   Material(const MaterialDescription& description, brdf::Lookup lookup);
 
   /// f_r(ω_o, ω)·max(0, n·ω), sr⁻¹, for many directions at one point.
-  void evaluate(const ShadingPoint& point, std::span<const Vec3> directions, std::span<Rgb> out) const;
+  void evaluate(const ShadingPoint& point, std::span<const Vec3> directions,
+                std::span<Rgb> out) const;
 
   /// The same for one.
   Rgb evaluate(const ShadingPoint& point, const Vec3& direction) const;
 
-  /// Makes what samplers use in place of the truth: the θ_r trees and their pyramid, if not there yet.
+  /// Makes what samplers use in place of the truth: the θ_r trees and their pyramid, if not there
+  /// yet.
   void need_trees();
 
   /// The θ_r-only set seen from a point: for AdaptiveProduct. After need_trees().

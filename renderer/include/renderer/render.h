@@ -50,8 +50,8 @@ struct RenderStatistics {
   std::uint64_t samples = 0;
   double mean_leaves = 0; ///< of products
   int spp = 0;            ///< samples per pixel in the end
-  /// Mean over the hit pixels, of those with light, of N · Var / mean²: what one sample's relative variance
-  /// is if points are random. Luminance.
+  /// Mean over the hit pixels, of those with light, of N · Var / mean²: what one sample's relative
+  /// variance is if points are random. Luminance.
   double relative_variance_per_sample = 0;
 };
 

@@ -18,7 +18,7 @@ enum class SamplerKind {
   ProductTable, ///< the paper's: product of the two stored trees of the nearest table entries
   Light,        ///< the light alone, by cdf inversion (or its tree, if there is no probe)
   Brdf,         ///< the reflectance alone, by descent in its tree
-  Mis           ///< half of the samples from each of the two, balance heuristic (Veach and Guibas 1995)
+  Mis ///< half of the samples from each of the two, balance heuristic (Veach and Guibas 1995)
 };
 
 /// As on the command line: product, product-table, light, brdf, mis.
