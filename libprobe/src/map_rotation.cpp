@@ -32,8 +32,9 @@ std::vector<Look> looks_of_cell(const MapOptions& options, int column, int row) 
   const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
   std::vector<Look> looks;
   for (int k = 0; k < along * along; ++k) {
+    const int down = k / along;
     const Vec2 cell(static_cast<float>(column), static_cast<float>(row));
-    const Vec2 in_cell(static_cast<float>(k % along) + 0.5F, static_cast<float>(k / along) + 0.5F);
+    const Vec2 in_cell(static_cast<float>(k % along) + 0.5F, static_cast<float>(down) + 0.5F);
     const Vec2 square =
         (cell + in_cell / static_cast<float>(along)) / static_cast<float>(options.orientations);
     const Vec2 in_pixel(fraction(0.5 + k * 0.7548776662466927),

@@ -47,7 +47,7 @@ private:
   /// probe's pixels there are enough.
   PointGrid grid_in(int x, int y) const {
     const float along = samples_along(x, y);
-    const int steps = std::max(1, static_cast<int>(along / point_step + 0.5F));
+    const int steps = std::max(1, static_cast<int>(std::lround(along / point_step)));
     PointGrid grid;
     grid.columns = steps * point_step;
     const int needed =

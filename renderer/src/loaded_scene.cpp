@@ -20,8 +20,11 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
   if (needs_material_trees(sampler) || product)
     for (Material& material : m_materials)
       material.need_trees();
-  if (sampler == SamplerKind::ProductTable)
+  if (sampler == SamplerKind::ProductTable) {
+    for (Material& material : m_materials)
+      material.need_roll_table();
     check_tables();
+  }
 }
 
 void LoadedScene::check_tables() const {

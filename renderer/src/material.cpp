@@ -50,6 +50,11 @@ void Material::need_trees() {
   m_pyramid.emplace(m_lobes->trees());
 }
 
+void Material::need_roll_table() {
+  if (!m_rolls && m_lambert)
+    m_rolls.emplace(LambertMaps(*m_lambert, 32, 16, 32));
+}
+
 /// Where a point's θ_r lies among the centres of the set's cells, in cells.
 float Material::theta_coordinate(const ShadingPoint& point) const {
   const float theta_r = arctangent(point.reflection.sin_theta_r, point.reflection.cos_theta_r);

@@ -40,6 +40,7 @@ void report(const char* what, double count, const Work& work) {
 void time_look_ups(const Probe& probe) {
   constexpr int count = 4'000'000;
   std::vector<Vec3> directions;
+  directions.reserve(count);
   for (int i = 0; i < count; ++i)
     directions.push_back(wavelet::square_to_sphere(spread_point(i)));
   report("radiance", count, [&] {
@@ -56,6 +57,7 @@ void time_sampling(const Probe& probe) {
   const LightDistribution light(probe);
   std::printf("%-44s %9.3f ms\n", "LightDistribution made", 1e3 * seconds_since(start));
   std::vector<Vec2> points;
+  points.reserve(count);
   for (int i = 0; i < count; ++i)
     points.push_back(spread_point(i));
   report("sample", count, [&] {

@@ -3,8 +3,11 @@
 #include <renderer/points.h>
 #include <renderer/render.h>
 
+#include <probe/probe_maps.h>
+#include <probe/read_probe.h>
 #include <probe/rgbe.h>
 #include <probe/synth.h>
+#include <wavelet/compress.h>
 #include <wavelet/parallel.h>
 
 #include <catch2/catch.hpp>
@@ -117,6 +120,28 @@ TEST_CASE("samplers agree on a scene with shadows; the estimators that assume li
   CHECK(mean_of(render_with(scene, options).film) == Approx(product).epsilon(0.02));
   options.estimator = Estimator::Bidirectional;
   CHECK(mean_of(render_with(scene, options).film) == Approx(product).epsilon(0.05));
+}
+
+TEST_CASE("a Lambertian gets its table with rolls at load") {
+  const TemporaryFolder folder;
+  SceneDescription scene = lambert_scene(folder, true);
+  probe::MapOptions map_options;
+  map_options.size = 32;
+  map_options.orientations = 8;
+  {
+    OutputFile file(folder.file("table.haar"));
+    wavelet::compress_set(
+        probe::ProbeMaps(probe::read_probe(scene.light.probe, probe::Mapping::Angular).probe,
+                         map_options),
+        {}, file);
+    file.commit();
+  }
+  RenderOptions options;
+  options.spp = 256;
+  const double product = mean_of(render_with(scene, options).film);
+  scene.light.table = folder.file("table.haar");
+  options.sampler = SamplerKind::ProductTable;
+  CHECK(mean_of(render_with(scene, options).film) == Approx(product).epsilon(0.01));
 }
 
 TEST_CASE("the variance estimate is the variance over seeds") {

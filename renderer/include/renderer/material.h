@@ -47,7 +47,10 @@ public:
   /// The tree of the θ_r cell nearest to a point's, in its reflection frame. After need_trees().
   const wavelet::TreeView& lobe(const ShadingPoint& point) const;
 
-  /// The set with rolls, if the scene names one.
+  /// Makes the set with rolls for a Lambertian that has none; measured materials must name theirs.
+  void need_roll_table();
+
+  /// The set with rolls, if there is one.
   const TreeTable* roll_table() const { return m_rolls ? &*m_rolls : nullptr; }
 
   const std::string& name() const { return m_name; }

@@ -11,7 +11,7 @@ namespace haarlight::renderer {
 enum class Points {
   Random, ///< independent, uniform
   Sobol   ///< the first two dimensions of Sobol's sequence, Owen-scrambled (Burley 2020), own for
-        ///< each pixel and dimension; any run of 2^k aligned indices is a (0, k, 2)-net
+          ///< each pixel and dimension; any run of 2^k aligned indices is a (0, k, 2)-net
 };
 
 /// Mixes two 32-bit words into one; every bit of the result depends on all of them.
