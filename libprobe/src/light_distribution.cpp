@@ -29,9 +29,10 @@ double pixel_luminance(const Probe& probe, int x, int y) {
 LightDistribution::LightDistribution(const Probe& probe)
     : m_mapping(probe.mapping()), m_width(probe.width()), m_height(probe.height()),
       m_rows(static_cast<std::size_t>(m_height) + 1),
-      m_row_guide(static_cast<std::size_t>(m_height)),
+      m_row_guide(row_parts * static_cast<std::size_t>(m_height)),
       m_columns(static_cast<std::size_t>(m_height) * static_cast<std::size_t>(m_width + 1)),
-      m_column_guide(static_cast<std::size_t>(m_height) * static_cast<std::size_t>(m_width)) {
+      m_column_parts((m_width + 3) / 4), m_column_guide(static_cast<std::size_t>(m_height) *
+                                                        static_cast<std::size_t>(m_column_parts)) {
   const auto width = static_cast<std::size_t>(m_width);
   std::vector<double> rows(static_cast<std::size_t>(m_height));
   parallel_for(rows.size(), [&](std::size_t y) {
@@ -41,13 +42,14 @@ LightDistribution::LightDistribution(const Probe& probe)
                                              probe.pixel_solid_angle(x, static_cast<int>(y));
     std::uint32_t* cdf = m_columns.data() + y * (width + 1);
     accumulate(weights, cdf);
-    make_guide(cdf, m_width, m_column_guide.data() + y * width);
+    make_guide(cdf, m_column_parts,
+               m_column_guide.data() + y * static_cast<std::size_t>(m_column_parts));
     rows[y] = std::accumulate(weights.begin(), weights.end(), 0.0);
   });
   if (std::accumulate(rows.begin(), rows.end(), 0.0) <= 0)
     throw_input_error(probe.path(), "is black, a probe must shine somewhere");
   accumulate(rows, m_rows.data());
-  make_guide(m_rows.data(), m_height, m_row_guide.data());
+  make_guide(m_rows.data(), row_parts * m_height, m_row_guide.data());
 }
 
 /// Every positive weight gets one unit at least, a weight of 0 none.
@@ -67,25 +69,25 @@ void LightDistribution::accumulate(const std::vector<double>& weights, std::uint
   }
 }
 
-/// The first of `count` equal parts of the whole begin in these steps of the cdf.
-void LightDistribution::make_guide(const std::uint32_t* cdf, int count, std::uint32_t* guide) {
+/// Of `parts` equal parts of the whole, the steps of the cdf that they begin in.
+void LightDistribution::make_guide(const std::uint32_t* cdf, int parts, std::uint32_t* guide) {
   std::uint32_t step = 0;
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < parts; ++k) {
     const auto from = static_cast<std::uint64_t>(one) * static_cast<std::uint64_t>(k) /
-                      static_cast<std::uint64_t>(count);
+                      static_cast<std::uint64_t>(parts);
     while (cdf[step + 1] <= from)
       ++step;
     guide[k] = step;
   }
 }
 
-/// The step of the cdf that u falls in: from where the guide says, one step further on average.
+/// The step of the cdf that u falls in: a few steps at most, on average, from where the guide says.
 LightDistribution::Step LightDistribution::find(const std::uint32_t* cdf,
-                                                const std::uint32_t* guide, int count, float u) {
+                                                const std::uint32_t* guide, int parts, float u) {
   constexpr std::int64_t last = std::int64_t{one} - 1;
   const auto place = static_cast<std::uint32_t>(
       std::min(static_cast<std::int64_t>(u * static_cast<float>(one)), last));
-  std::uint32_t step = guide[(std::uint64_t{place} * static_cast<std::uint64_t>(count)) >> 31U];
+  std::uint32_t step = guide[(std::uint64_t{place} * static_cast<std::uint64_t>(parts)) >> 31U];
   while (cdf[step + 1] <= place)
     ++step;
   const std::uint32_t width = cdf[step + 1] - cdf[step];
@@ -144,11 +146,12 @@ float LightDistribution::density(std::uint32_t row_width, std::uint32_t column_w
 }
 
 LightSample LightDistribution::sample(const Vec2& u) const {
-  const Step row = find(m_rows.data(), m_row_guide.data(), m_height, u.y());
+  const Step row = find(m_rows.data(), m_row_guide.data(), row_parts * m_height, u.y());
   const auto y = static_cast<std::size_t>(row.index);
   const auto width = static_cast<std::size_t>(m_width);
-  const Step column =
-      find(m_columns.data() + y * (width + 1), m_column_guide.data() + y * width, m_width, u.x());
+  const Step column = find(m_columns.data() + y * (width + 1),
+                           m_column_guide.data() + y * static_cast<std::size_t>(m_column_parts),
+                           m_column_parts, u.x());
   const Place place = place_in_pixel(column, row);
   return with_mapping(m_mapping, [&](auto map) -> LightSample {
     float wx = 0;

@@ -27,7 +27,9 @@ constexpr SamplerKind all_kinds[] = {SamplerKind::Product, SamplerKind::ProductT
 
 void write_haar(const std::string& path, const wavelet::MapSource& source) {
   OutputFile file(path);
-  wavelet::compress_set(source, {}, file);
+  wavelet::CompressOptions options;
+  options.threshold.tolerance = default_tolerance(source.info(), options.threshold.criterion);
+  wavelet::compress_set(source, options, file);
   file.commit();
 }
 
@@ -66,9 +68,9 @@ private:
     const brdf::MeasuredBrdf measured(file);
     brdf::BrdfMapOptions options;
     options.size = 128;
-    options.theta = 16;
     write_haar(m_folder.file(name + ".haar"), brdf::BrdfMaps(measured, options));
     options.size = 32;
+    options.theta = 16;
     options.roll = 16;
     write_haar(m_folder.file(name + "-table.haar"), brdf::BrdfMaps(measured, options));
   }
@@ -78,7 +80,6 @@ private:
     probe::write_rgbe(file, probe::draw_angular(*probe::make_scene(kind), 64));
     const probe::LoadedProbe loaded = probe::read_probe(file, probe::Mapping::Angular);
     probe::MapOptions options;
-    options.size = 128;
     write_haar(m_folder.file(name + ".haar"), probe::ProbeMaps(loaded.probe, options));
     options.size = 32;
     options.orientations = 8;
@@ -150,15 +151,24 @@ double true_error(const LoadedScene& scene, const Sampler& sampler, const Shadin
   return std::sqrt(std::max(0.0, square - truth * truth) / sample_count);
 }
 
-double estimate_with(const LoadedScene& scene, Sampler& sampler, const ShadingPoint& point,
-                     std::uint32_t key) {
+struct Estimate {
+  double mean = 0;
+  double error = 0; ///< as the samples themselves have it
+};
+
+Estimate estimate_with(const LoadedScene& scene, Sampler& sampler, const ShadingPoint& point,
+                       std::uint32_t key) {
   std::vector<DirectionSample> samples(sample_count);
   sampler.sample({Points::Random, key, 0}, samples);
   double sum = 0;
+  double square = 0;
   for (const DirectionSample& s : samples)
-    if (s.pdf > 0)
-      sum += integrand(scene, point, s.direction) / static_cast<double>(s.pdf);
-  return sum / sample_count;
+    if (s.pdf > 0) {
+      const double value = integrand(scene, point, s.direction) / static_cast<double>(s.pdf);
+      sum += value / sample_count;
+      square += value * value / sample_count;
+    }
+  return {sum, std::sqrt(std::max(0.0, square - sum * sum) / sample_count)};
 }
 
 } // namespace
@@ -177,8 +187,10 @@ TEST_CASE("every sampler with the unbiased estimator agrees with brute-force qua
         for (const ShadingPoint& point : shading_points()) {
           sampler->prepare(point, scene.materials()[0]);
           const double truth = quadrature(scene, point, source);
-          const double error = true_error(scene, *sampler, point, source, truth);
-          const double mean = estimate_with(scene, *sampler, point, key++);
+          const auto [mean, own_error] = estimate_with(scene, *sampler, point, key++);
+          // The grid misses slivers of the probe's pixels, the samples what they did not find.
+          const double error =
+              std::max(own_error, true_error(scene, *sampler, point, source, truth));
           INFO(material << " under " << probe << " with " << sampler_name(kind) << ": " << mean
                         << " ± " << error << ", not " << truth);
           // Quadrature itself is good to about 0.1 %.
