@@ -33,7 +33,8 @@ struct Frame {
   Vec3 to_outer(const Vec3& v) const { return v.x() * t + v.y() * b + v.z() * n; }
 };
 
-/// Any frame about a unit axis, continuous everywhere but at −z (Duff et al. 2017).
+/// A frame about a unit axis, a function of the axis alone; it jumps where z changes sign (Duff et
+/// al. 2017).
 inline Frame frame_about(const Vec3& n) {
   const float sign = std::copysign(1.0F, n.z());
   const float a = -1.0F / (sign + n.z());
