@@ -48,7 +48,8 @@ Level coarser(const Level& fine) {
   level.moments.resize(fine.moments.size() / 4);
   for (int y = 0; y < level.side; ++y)
     for (int x = 0; x < level.side; ++x)
-      level.moments[static_cast<std::size_t>(y * level.side + x)] =
+      level.moments[static_cast<std::size_t>(y) * static_cast<std::size_t>(level.side) +
+                    static_cast<std::size_t>(x)] =
           0.25F * ((fine.at(2 * x, 2 * y) + fine.at(2 * x + 1, 2 * y)) +
                    (fine.at(2 * x, 2 * y + 1) + fine.at(2 * x + 1, 2 * y + 1)));
   return level;

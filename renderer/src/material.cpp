@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace haarlight::renderer {
 
@@ -74,7 +75,7 @@ wavelet::RotatedReflectance Material::reflectance(const ShadingPoint& point) con
 }
 
 const wavelet::TreeView& Material::lobe(const ShadingPoint& point) const {
-  return m_lobes->tree(static_cast<int>(theta_coordinate(point) + 0.5F), 0);
+  return m_lobes->tree(static_cast<int>(std::lround(theta_coordinate(point))), 0);
 }
 
 Rgb Material::from_trees(const ShadingPoint& point, const Vec3& direction) const {

@@ -1,6 +1,7 @@
 // The paper's product: the stored trees of the nearest entries of two tables, multiplied and
 // cached.
 
+#include "product_tree_sampler.h"
 #include "sampler_kinds.h"
 
 #include <probe/probe_maps.h>
@@ -24,7 +25,7 @@ struct LightCell {
   Frame frame;
 };
 
-class TableSampler : public Sampler {
+class TableSampler : public ProductTreeSampler {
 public:
   explicit TableSampler(const Light& light) : m_table(*light.rotated_table()) {}
 
@@ -39,31 +40,6 @@ public:
     const int roll = cell_of(phi / (2.0F * pi) + (phi < 0 ? 1.0F : 0.0F), rolls.info().rolls);
     m_product = &cached(cell, material, column, roll);
   }
-
-  void sample(const PointSource& points, std::span<DirectionSample> out) override {
-    m_points.resize(out.size());
-    points.fill(2, m_points);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      if (m_product->empty()) {
-        out[i] = {Vec3::UnitZ(), 0};
-        continue;
-      }
-      const wavelet::Descent d = m_product->sample(m_points[i].x(), m_points[i].y());
-      out[i] = {m_frame.to_outer(wavelet::square_to_sphere(wavelet::end_point(d))),
-                d.pdf / wavelet::sphere_area};
-    }
-  }
-
-  float pdf(const Vec3& direction, std::size_t /*count*/) const override {
-    const Vec2 p = wavelet::sphere_to_square(m_frame.to_local(direction));
-    return m_product->pdf(p.x(), p.y()) / wavelet::sphere_area;
-  }
-
-  std::optional<Rgb> unshadowed() const override {
-    return Rgb(m_product->integral() * wavelet::sphere_area);
-  }
-
-  std::size_t leaves() const override { return m_product->leaf_count(); }
 
 private:
   /// Direct-mapped: what neighbouring pixels share is found again, and memory stays bounded.
@@ -104,10 +80,7 @@ private:
   }
 
   const TreeTable& m_table;
-  Frame m_frame;
-  const wavelet::ProductTree* m_product = nullptr;
   std::vector<Cached> m_cache = std::vector<Cached>(cache_size);
-  std::vector<Vec2> m_points;
 };
 
 } // namespace
