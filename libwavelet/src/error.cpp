@@ -13,7 +13,7 @@ std::string compose(const std::string& path, const std::string& message,
 
 } // namespace
 
-Error::Error(ErrorKind kind, std::string path, std::string message,
+Error::Error(ErrorKind kind, std::string path, const std::string& message,
              std::optional<std::uint64_t> offset)
     : std::runtime_error(compose(path, message, offset)), m_kind(kind), m_path(std::move(path)),
       m_offset(offset) {}

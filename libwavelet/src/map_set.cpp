@@ -29,8 +29,8 @@ void ConservationMeter::add(int column, int row, const Map& map, const std::opti
   if (!truth)
     return;
   const double integral = luminance_of(map_mean(map)) * static_cast<double>(sphere_area);
-  m_pairs[static_cast<std::size_t>(row * m_columns + column)] = {
-      integral, luminance_of(truth->cast<double>()), true};
+  m_pairs[static_cast<std::size_t>(row) * static_cast<std::size_t>(m_columns) +
+          static_cast<std::size_t>(column)] = {integral, luminance_of(truth->cast<double>()), true};
 }
 
 std::optional<Conservation> ConservationMeter::result() const {

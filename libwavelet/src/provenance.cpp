@@ -27,7 +27,7 @@ std::string Provenance::get(const std::string& name) const {
 std::string Provenance::text() const {
   std::string lines;
   for (const auto& [name, value] : m_entries)
-    lines += name + '=' + value + '\n';
+    lines.append(name).append("=").append(value).append("\n");
   return lines;
 }
 

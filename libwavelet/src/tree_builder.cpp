@@ -75,7 +75,7 @@ private:
   unsigned child_mask(int level, int x, int y) const {
     if (level + 1 >= m_levels)
       return 0;
-    const auto& marks = m_present[static_cast<std::size_t>(level + 1)];
+    const auto& marks = m_present[static_cast<std::size_t>(level) + 1];
     unsigned mask = 0;
     for (int q = 0; q < 4; ++q)
       if (marks[place(level + 1, 2 * x + (q & 1), 2 * y + (q >> 1))] != 0)

@@ -21,7 +21,7 @@ public:
   /// @param path    the file concerned, as the user named it; empty if none
   /// @param message what is wrong, and what would be right
   /// @param offset  byte offset of the trouble in the file, where one is known
-  Error(ErrorKind kind, std::string path, std::string message,
+  Error(ErrorKind kind, std::string path, const std::string& message,
         std::optional<std::uint64_t> offset = std::nullopt);
 
   ErrorKind kind() const { return m_kind; }
