@@ -1,4 +1,4 @@
-#include <wavelet/product.h>
+#include <wavelet/table_product.h>
 
 namespace haarlight::wavelet {
 namespace {
@@ -14,8 +14,6 @@ struct TableProduct::Builder {
   const TreeView& light;
   const TreeView& reflectance;
   SquareSymmetry symmetry;
-  Float4 floor;
-  Float4 integral = {};
   ProductTree product;
   std::vector<std::int32_t> parent_slots;
 
@@ -28,7 +26,7 @@ struct TableProduct::Builder {
   };
 
   /// Splits a square into a new product node. @return its index
-  std::int32_t split(const Pair& square, std::int32_t slot, float area) {
+  std::int32_t split(const Pair& square, std::int32_t slot, int level) {
     const auto index = static_cast<std::int32_t>(product.m_nodes.size());
     product.m_nodes.emplace_back();
     parent_slots.push_back(slot);
@@ -45,21 +43,26 @@ struct TableProduct::Builder {
       const Pair quadrant = {lights[q], stored[s], light.child(square.light_node, q),
                              reflectance.child(square.reflectance_node, s)};
       const std::int32_t below =
-          visit(quadrant, 4 * index + static_cast<std::int32_t>(q), area / 4);
+          visit(quadrant, 4 * index + static_cast<std::int32_t>(q), level + 1);
       product.m_nodes[static_cast<std::size_t>(index)].child[q] = below;
     }
     return index;
   }
 
   /// What the product has over a square: a node, or the leaf ~result.
-  std::int32_t visit(const Pair& square, std::int32_t slot, float area) {
+  std::int32_t visit(const Pair& square, std::int32_t slot, int level) {
     if (square.reflectance_node != no_node)
-      return split(square, slot, area);
-    const Float4 weights = larger(square.reflectance_mean, floor) * luminance_lanes;
-    integral += area * square.light_mean * square.reflectance_mean;
-    product.m_nodes[static_cast<std::size_t>(slot / 4)].weights[slot % 4] =
-        std::max(lane_sum(square.light_mean * weights), 0.0F);
-    product.m_leaves.push_back({square.light_mean, weights, square.light_node});
+      return split(square, slot, level);
+    const Float4 weights = larger(square.reflectance_mean, product.m_floor) * luminance_lanes;
+    const float density = std::max(lane_sum(square.light_mean * weights), 0.0F);
+    product.m_nodes[static_cast<std::size_t>(slot / 4)].weights[slot % 4] = density;
+    ProductLeaf leaf;
+    leaf.light = square.light_mean;
+    leaf.reflectance = square.reflectance_mean;
+    leaf.node = square.light_node;
+    leaf.slot = slot;
+    leaf.level = level;
+    product.m_leaves.push_back(leaf);
     return ~static_cast<std::int32_t>(product.m_leaves.size() - 1);
   }
 
@@ -67,16 +70,16 @@ struct TableProduct::Builder {
   void run() {
     product.m_light = light;
     split({to_lanes(light.mean), to_lanes(reflectance.mean), light.root(), reflectance.root()}, -1,
-          1.0F);
-    product.m_integral = to_rgb(integral);
+          0);
+    product.m_leaf_count = product.m_leaves.size();
     product.sum_upwards(parent_slots);
   }
 };
 
 ProductTree TableProduct::build(const TreeView& light, const TreeView& reflectance,
                                 const SquareSymmetry& symmetry) {
-  Builder builder = {light, reflectance, symmetry, {}, {}, {}, {}};
-  builder.floor = larger(to_lanes(reflectance.mean) * reflectance_floor, Float4{});
+  Builder builder = {light, reflectance, symmetry, {}, {}};
+  builder.product.m_floor = larger(to_lanes(reflectance.mean) * reflectance_floor, Float4{});
   builder.run();
   return std::move(builder.product);
 }

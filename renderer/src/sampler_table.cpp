@@ -7,7 +7,7 @@
 #include <probe/probe_maps.h>
 #include <wavelet/error.h>
 #include <wavelet/sphere_map.h>
-#include <wavelet/symmetry.h>
+#include <wavelet/table_product.h>
 
 #include <algorithm>
 

@@ -1,9 +1,10 @@
 // Products and their sampling. Rivals in the same run: the dense way, multiplying two 512² maps and
 // building the mip pyramid that a descent needs, and sampling such a pyramid.
 
+#include <wavelet/adaptive_product.h>
 #include <wavelet/compress.h>
-#include <wavelet/product.h>
 #include <wavelet/sphere_map.h>
+#include <wavelet/table_product.h>
 
 #include <benchmark/benchmark.h>
 
@@ -103,6 +104,12 @@ RotatedReflectance reflectance_at(const Pyramid& lobes, std::mt19937& generator)
   return r;
 }
 
+void draw_points(std::mt19937& generator, std::span<Vec2> points) {
+  for (Vec2& p : points)
+    p = Vec2(static_cast<float>(generator() >> 8U), static_cast<float>(generator() >> 8U)) *
+        0x1p-24F;
+}
+
 void adaptive_product(benchmark::State& state) {
   AdaptiveProduct product(light_tree().view());
   const Pyramid& lobes = pyramid(static_cast<int>(state.range(0)));
@@ -122,10 +129,13 @@ void sample_64_of_product(benchmark::State& state) {
   std::mt19937 generator(1);
   const ProductTree& tree =
       product.build(reflectance_at(pyramid(static_cast<int>(state.range(0))), generator), {});
-  std::uniform_real_distribution<float> uniform(0, 1);
-  for (auto _ : state)
-    for (int i = 0; i < 64; ++i)
-      benchmark::DoNotOptimize(tree.sample(uniform(generator), uniform(generator)));
+  std::vector<Vec2> points(64);
+  std::vector<Descent> descents(64);
+  for (auto _ : state) {
+    draw_points(generator, points);
+    tree.sample(points, descents);
+    benchmark::DoNotOptimize(descents.data());
+  }
 }
 BENCHMARK(sample_64_of_product)->Arg(10)->Arg(300)->Arg(5000);
 
@@ -193,10 +203,12 @@ void sample_64_of_dense(benchmark::State& state) {
   DenseProduct product;
   product.build(light_map(map_size), lobe_map(2, 300));
   std::mt19937 generator(1);
-  std::uniform_real_distribution<float> uniform(0, 1);
-  for (auto _ : state)
-    for (int i = 0; i < 64; ++i)
-      benchmark::DoNotOptimize(product.sample(uniform(generator), uniform(generator)));
+  std::vector<Vec2> points(64);
+  for (auto _ : state) {
+    draw_points(generator, points);
+    for (const Vec2& p : points)
+      benchmark::DoNotOptimize(product.sample(p.x(), p.y()));
+  }
 }
 BENCHMARK(sample_64_of_dense);
 

@@ -2,8 +2,9 @@
 #include "random_map.h"
 
 #include <wavelet/compress.h>
-#include <wavelet/product.h>
+#include <wavelet/adaptive_product.h>
 #include <wavelet/sphere_map.h>
+#include <wavelet/table_product.h>
 
 #include <catch2/catch.hpp>
 
