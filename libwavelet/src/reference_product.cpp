@@ -13,6 +13,11 @@ T scaled(T value, int l) {
   return std::ldexp(value, l);
 }
 
+template <class T>
+T dot(const std::array<T, 3>& a, const std::array<T, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 } // namespace
 
 template <class T>
@@ -34,9 +39,11 @@ T ParentSums<T>::operator()(const Square& s) {
 
 template <class T>
 ChildrenSums<T>::ChildrenSums(const CoefficientSet<T>& g, const CoefficientSet<T>& h) {
-  for (const auto& [s, d] : g.details) {
-    const auto e = h.at(s);
-    const T c = d[0] * e[0] + d[1] * e[1] + d[2] * e[2];
+  const bool g_smaller = g.details.size() < h.details.size(); // either will do to walk over
+  const CoefficientSet<T>& walked = g_smaller ? g : h;
+  const CoefficientSet<T>& other = g_smaller ? h : g;
+  for (const auto& [s, d] : walked.details) {
+    const T c = dot(d, other.at(s));
     if (c == 0)
       continue;
     for (int l = s.level; l >= 0; --l)
@@ -112,10 +119,8 @@ T inner_product(const CoefficientSet<T>& f, const CoefficientSet<T>& g) {
   const CoefficientSet<T>& small = f_smaller ? f : g;
   const CoefficientSet<T>& large = f_smaller ? g : f;
   T result = f.root * g.root;
-  for (const auto& [s, d] : small.details) {
-    const auto e = large.at(s);
-    result += d[0] * e[0] + d[1] * e[1] + d[2] * e[2];
-  }
+  for (const auto& [s, d] : small.details)
+    result += dot(d, large.at(s));
   return result;
 }
 
