@@ -292,6 +292,8 @@ BENCHMARK(hash_opproduct_all_squares)->Arg(128)->Arg(512)->Unit(benchmark::kMicr
 /// Adds a table of ratios at the end, of the best CPU times.
 class RatioReporter : public benchmark::ConsoleReporter {
 public:
+  RatioReporter() : ConsoleReporter(OO_Tabular) {}
+
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs)
       if (run.run_type == Run::RT_Iteration && !run.error_occurred) {
