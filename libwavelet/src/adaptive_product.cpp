@@ -37,7 +37,8 @@ std::uint16_t morton_column(unsigned code) {
 } // namespace
 
 AdaptiveProduct::AdaptiveProduct(const TreeView& light) : m_light(light) {
-  m_product.m_light = light;
+  m_product.m_rests.resize(1);
+  m_product.m_rests[0].tree = light;
   // The families of level start_level − 1 and the nodes above them are the same for every product.
   for (unsigned code = 0; code < (1U << (2 * (start_level - 1))); ++code) {
     Family family = {to_lanes(light.mean), light.root(),        0,
@@ -57,8 +58,9 @@ const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
   m_reflectance = reflectance;
   m_limit = static_cast<std::size_t>(options.max_leaves);
   const Float4 mean = reflectance.pyramid->lookup(reflectance.entry0, 0, 0.5F, 0.5F);
-  m_product.m_floor = larger(mean * reflectance_floor, Float4{});
-  m_product.m_floor[3] = 0;
+  Float4& floor = m_product.m_rests[0].floor;
+  floor = larger(mean * reflectance_floor, Float4{});
+  floor[3] = 0;
   start();
   refine(options);
   m_product.sum_upwards(m_parent_slots);
@@ -151,7 +153,8 @@ void AdaptiveProduct::expand_all(float threshold) {
       const auto batch =
           std::span<const Family>(m_families)
               .subspan(begin, std::min(detail::family_batch, m_families.size() - begin));
-      detail::weigh_families(m_light, m_reflectance, m_product.m_floor, batch, quadrants.data());
+      detail::weigh_families(m_light, m_reflectance, m_product.m_rests[0].floor, batch,
+                             quadrants.data());
       for (std::size_t i = 0; i < batch.size(); ++i)
         add(batch[i], quadrants[i], threshold);
     }

@@ -11,8 +11,7 @@ constexpr std::size_t width = 32;
 /// Takes a step with every one of `count` densities that is not at its tree's end, again and again
 /// until all are. @param choose (i, weights) → quadrant
 template <class Choose>
-void walk_all(const TreeView& tree, TreeDensity* densities, Descent* descents, std::size_t count,
-              Choose choose) {
+void walk_all(TreeDensity* densities, Descent* descents, std::size_t count, Choose choose) {
   std::array<std::uint8_t, width> active;
   std::size_t left = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -23,7 +22,7 @@ void walk_all(const TreeView& tree, TreeDensity* densities, Descent* descents, s
     std::size_t next = 0;
     for (std::size_t k = 0; k < left; ++k) {
       const std::size_t i = active[k];
-      detail::step_down(tree, densities[i], descents[i], [&](Float4 w) { return choose(i, w); });
+      detail::step_down(densities[i], descents[i], [&](Float4 w) { return choose(i, w); });
       active[next] = static_cast<std::uint8_t>(i);
       next += densities[i].node != no_node ? 1 : 0;
     }
@@ -33,21 +32,20 @@ void walk_all(const TreeView& tree, TreeDensity* densities, Descent* descents, s
 
 } // namespace
 
-void descend_tree(const TreeView& tree, std::span<TreeDensity> densities,
-                  std::span<Descent> descents) {
+void descend_tree(std::span<TreeDensity> densities, std::span<Descent> descents) {
   for (std::size_t begin = 0; begin < descents.size(); begin += width) {
     Descent* d = descents.data() + begin;
-    walk_all(tree, densities.data() + begin, d, std::min(width, descents.size() - begin),
+    walk_all(densities.data() + begin, d, std::min(width, descents.size() - begin),
              [&](std::size_t i, Float4 w) { return steer(d[i], w); });
   }
 }
 
-void follow_tree(const TreeView& tree, std::span<TreeDensity> densities,
-                 std::span<const Vec2> points, std::span<Descent> descents) {
+void follow_tree(std::span<TreeDensity> densities, std::span<const Vec2> points,
+                 std::span<Descent> descents) {
   for (std::size_t begin = 0; begin < descents.size(); begin += width) {
     Descent* d = descents.data() + begin;
     const Vec2* p = points.data() + begin;
-    walk_all(tree, densities.data() + begin, d, std::min(width, descents.size() - begin),
+    walk_all(densities.data() + begin, d, std::min(width, descents.size() - begin),
              [&](std::size_t i, Float4 /*w*/) { return steer_to(d[i], p[i].x(), p[i].y()); });
   }
 }

@@ -37,7 +37,7 @@ Descent ProductTree::sample(float u1, float u2) const {
   d.u1 = u1;
   d.u2 = u2;
   const std::int32_t leaf = descend_nodes(d);
-  descend_tree(m_light, density(leaf), d);
+  descend_tree(density(leaf), d);
   return d;
 }
 
@@ -52,7 +52,7 @@ void ProductTree::sample(std::span<const Vec2> points, std::span<Descent> out) c
       batch[i].u2 = points[begin + i].y();
       densities[i] = density(descend_nodes(batch[i]));
     }
-    descend_tree(m_light, std::span(densities).first(batch.size()), batch);
+    descend_tree(std::span(densities).first(batch.size()), batch);
   }
 }
 
@@ -70,7 +70,7 @@ float ProductTree::pdf(float u, float v) const {
       return 0;
   }
   d.pdf /= mean();
-  follow_tree(m_light, density(~next), u, v, d);
+  follow_tree(density(~next), u, v, d);
   return d.pdf;
 }
 

@@ -29,7 +29,6 @@ private:
   /// As many descents from the root of the tree.
   void start(std::size_t count);
 
-  const wavelet::TreeView* m_tree = nullptr;
   wavelet::TreeDensity m_density;
   Frame m_frame;
   std::vector<Vec2> m_points;

@@ -4,7 +4,7 @@
 #include <wavelet/adaptive_product.h>
 #include <wavelet/compress.h>
 #include <wavelet/sphere_map.h>
-#include <wavelet/table_product.h>
+#include <wavelet/synchronous_product.h>
 
 #include <benchmark/benchmark.h>
 
@@ -191,13 +191,16 @@ void dense_product(benchmark::State& state) {
 }
 BENCHMARK(dense_product)->Arg(300);
 
-void table_product(benchmark::State& state) {
+void synchronous_product(benchmark::State& state) {
   const Tree light = tree_of(light_map(map_size), 5e-4);
   const Tree lobe = tree_of(lobe_map(2, static_cast<float>(state.range(0))), 5e-4);
+  const TreeFactor factors[2] = {TreeFactor(light.view()), TreeFactor(lobe.view())};
+  const Factor* const pointers[2] = {&factors[0], &factors[1]};
+  SynchronousProduct product;
   for (auto _ : state)
-    benchmark::DoNotOptimize(TableProduct::build(light.view(), lobe.view(), {}).integral());
+    benchmark::DoNotOptimize(product.build(pointers).nodes().data());
 }
-BENCHMARK(table_product)->Arg(10)->Arg(300)->Arg(5000);
+BENCHMARK(synchronous_product)->Arg(10)->Arg(300)->Arg(5000);
 
 void sample_64_of_dense(benchmark::State& state) {
   DenseProduct product;

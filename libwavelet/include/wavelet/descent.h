@@ -72,13 +72,14 @@ inline Vec2 end_point(const Descent& d) { return {d.x + d.u1 * d.side, d.y + d.u
 
 /// A tree, or what lies under one of its squares, as a density: luminance-like weights of colours.
 struct TreeDensity {
+  const TreeView* tree = nullptr;
   std::uint32_t node = no_node; ///< of the square, or no_node: uniform in it
   float mean = 0;               ///< weighted average over the square
   Float4 weights = luminance_lanes;
 
-  /// Density over a whole tree.
+  /// Density over a whole tree, which must outlive it.
   static TreeDensity of(const TreeView& tree, Float4 weights = luminance_lanes) {
-    return {tree.root(), lane_sum(to_lanes(tree.mean) * weights), weights};
+    return {&tree, tree.root(), lane_sum(to_lanes(tree.mean) * weights), weights};
   }
 };
 
@@ -105,36 +106,35 @@ inline Float4 quadrant_weights(Float4 means) {
 
 /// One step from a node to the quadrant that `choose` picks by the quadrants' weights.
 template <class Choose>
-void step_down(const TreeView& tree, TreeDensity& density, Descent& d, Choose choose) {
-  const Float4 means = quadrant_means(tree.details(density.node), density);
+void step_down(TreeDensity& density, Descent& d, Choose choose) {
+  const Float4 means = quadrant_means(density.tree->details(density.node), density);
   const Float4 w = quadrant_weights(means);
   const unsigned q = choose(w);
   d.pdf *= quadrant_density(w, q);
   density.mean = means[q];
-  density.node = tree.child(density.node, q);
+  density.node = density.tree->child(density.node, q);
 }
 
 } // namespace detail
 
 /// Leads a descent from a square to the end of its tree; d.pdf becomes the pdf per unit square.
-inline void descend_tree(const TreeView& tree, TreeDensity density, Descent& d) {
+inline void descend_tree(TreeDensity density, Descent& d) {
   while (density.node != no_node)
-    detail::step_down(tree, density, d, [&](Float4 w) { return steer(d, w); });
+    detail::step_down(density, d, [&](Float4 w) { return steer(d, w); });
 }
 
 /// The pdf of descend_tree() at (u, v), which must lie in the descent's square, into d.pdf.
-inline void follow_tree(const TreeView& tree, TreeDensity density, float u, float v, Descent& d) {
+inline void follow_tree(TreeDensity density, float u, float v, Descent& d) {
   while (density.node != no_node)
-    detail::step_down(tree, density, d, [&](Float4 /*w*/) { return steer_to(d, u, v); });
+    detail::step_down(density, d, [&](Float4 /*w*/) { return steer_to(d, u, v); });
 }
 
 /// descend_tree() for many at once: their steps alternate, so that none waits for memory alone.
 /// @param densities as many as descents; used up
-void descend_tree(const TreeView& tree, std::span<TreeDensity> densities,
-                  std::span<Descent> descents);
+void descend_tree(std::span<TreeDensity> densities, std::span<Descent> descents);
 
 /// follow_tree() for many at once. @param points as many as the others
-void follow_tree(const TreeView& tree, std::span<TreeDensity> densities,
-                 std::span<const Vec2> points, std::span<Descent> descents);
+void follow_tree(std::span<TreeDensity> densities, std::span<const Vec2> points,
+                 std::span<Descent> descents);
 
 } // namespace haarlight::wavelet

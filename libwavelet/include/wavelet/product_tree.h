@@ -1,10 +1,10 @@
 #pragma once
-// A product of a light tree and a reflectance as something to sample: a quadtree over the light's
-// square whose leaves are squares on which one factor counts as constant, so that below them the
-// product has the detail of the light tree.
+// A product of functions as something to sample: a quadtree whose leaves are squares on which all
+// factors but one count as constant, so that below them the product has the detail of that one's
+// tree: mostly the light's.
 //
 // The density follows the luminance of the product, not the product of luminances: a leaf weighs
-// the light's channels by luminance weight times reflectance.
+// the colours of what is left by luminance weight times the constants.
 
 #include <wavelet/descent.h>
 #include <wavelet/tree.h>
@@ -22,13 +22,14 @@ struct ProductNode {
   std::int32_t child[4] = {-1, -1, -1, -1};
 };
 
-/// A square on which the reflectance counts as constant: the light tree's share of it. Columns and
-/// rows count squares of the leaf's level.
+/// A square on which all factors but one count as constant. Columns and rows count squares of the
+/// leaf's level.
 struct ProductLeaf {
-  Float4 light = {};       ///< average, lanes R, G, B, 0
-  Float4 reflectance = {}; ///< average, lanes R, G, B
-  std::uint32_t node = no_node;
-  std::int32_t slot = -1; ///< 4 × its parent's product node + quadrant
+  Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, 0
+  Float4 reflectance = {};      ///< product of the others' averages, lanes R, G, B
+  std::uint32_t node = no_node; ///< in the tree of the factor that is left
+  std::uint32_t rest = 0;       ///< which factor is left
+  std::int32_t slot = -1;       ///< 4 × its parent's product node + quadrant
   std::int32_t level = 0;
   std::uint16_t x = 0, y = 0;
 };
@@ -43,6 +44,16 @@ public:
   bool empty() const { return m_nodes.empty() || !(mean() > 0); }
 
   std::size_t leaf_count() const { return m_leaf_count; }
+
+  /// Nodes, parents before children; the first is the whole square.
+  std::span<const ProductNode> nodes() const { return m_nodes; }
+
+  /// Leaves in no particular order; those that no node names are not in use and hold no light.
+  std::span<const ProductLeaf> leaves() const { return m_leaves; }
+
+  /// The tree that a leaf's node is of.
+  const TreeView& rest(std::uint32_t index) const { return m_rests[index].tree; }
+
   std::size_t bytes() const {
     return m_nodes.size() * sizeof(ProductNode) + m_leaves.size() * sizeof(ProductLeaf);
   }
@@ -60,7 +71,13 @@ public:
 
 private:
   friend class AdaptiveProduct;
-  friend class TableProduct;
+  friend class SynchronousProduct;
+
+  /// A factor that may be left in leaves.
+  struct Rest {
+    TreeView tree;
+    Float4 floor = {}; ///< of the product of the others, in the density; lanes R, G, B, 0
+  };
 
   /// Turns node weights, given at leaves, into averages all the way up.
   void sum_upwards(const std::vector<std::int32_t>& parent_slots);
@@ -69,6 +86,10 @@ private:
 
   std::int32_t& child(std::int32_t slot) {
     return m_nodes[static_cast<std::uint32_t>(slot) / 4].child[slot & 3];
+  }
+
+  void set_density(std::int32_t slot, float density) {
+    m_nodes[static_cast<std::uint32_t>(slot) / 4].weights[slot & 3] = density;
   }
 
   /// A leaf's share in the total.
@@ -82,12 +103,12 @@ private:
 
   TreeDensity density(std::int32_t leaf) const {
     const ProductLeaf& l = m_leaves[static_cast<std::size_t>(leaf)];
-    const Float4 weights = larger(l.reflectance, m_floor) * luminance_lanes;
-    return {l.node, lane_sum(l.light * weights), weights};
+    const Rest& rest = m_rests[l.rest];
+    const Float4 weights = larger(l.reflectance, rest.floor) * luminance_lanes;
+    return {&rest.tree, l.node, lane_sum(l.light * weights), weights};
   }
 
-  TreeView m_light;
-  Float4 m_floor = {}; ///< of the reflectance, in the density
+  std::vector<Rest> m_rests;
   std::vector<ProductNode> m_nodes;
   std::vector<ProductLeaf> m_leaves;
   std::size_t m_leaf_count = 0;

@@ -1,0 +1,27 @@
+#pragma once
+// How differences become a tree's stored coefficients.
+
+#include <wavelet/tree.h>
+
+namespace haarlight::wavelet {
+
+/// A power of two that brings the largest difference just under what a half can hold; 1 for floats.
+float coefficient_scale(CoefficientType type, float largest_difference);
+
+/// Appends nodes' coefficients to a tree whose channels, type and scale are set.
+class CoefficientWriter {
+public:
+  explicit CoefficientWriter(Tree& tree) : m_tree(tree) {}
+
+  void append(const Details& details);
+
+  /// Pads the array, so that lanes may be loaded from its end.
+  void finish();
+
+private:
+  void append_value(float value);
+
+  Tree& m_tree;
+};
+
+} // namespace haarlight::wavelet
