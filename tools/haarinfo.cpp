@@ -1,6 +1,6 @@
 // haarinfo: what a .haar file holds.
 #include <support/inspect.h>
-#include <support/tool.h>
+#include <support/program.h>
 #include <support/words.h>
 
 #include <image/image_exr.h>
@@ -123,14 +123,15 @@ int inspect(const tool::Tool& app, const Options& options) {
   return tool::exit_ok;
 }
 
+int look_into(const tool::Tool& app, const Options& options) {
+  check(options);
+  return options.validate ? validate(app, options.path) : inspect(app, options);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool app("haarinfo", "Tells what a .haar file holds, checks it and draws it.");
-  Options options;
-  declare(app, options);
-  return app.run(argc, argv, [&] {
-    check(options);
-    return options.validate ? validate(app, options.path) : inspect(app, options);
-  });
+  return tool::run_program(argc, argv, "haarinfo",
+                           "Tells what a .haar file holds, checks it and draws it.", declare,
+                           look_into);
 }
