@@ -35,6 +35,9 @@ struct Map {
 /// Average of a map's pixels, summed in double.
 Eigen::Array3d map_mean(const Map& map);
 
+/// A map's averages over squares of two by two pixels. @param map of two pixels a side or more
+Map halved(const Map& map);
+
 enum class SetKind : std::uint32_t {
   Generic = 0, ///< any functions on the square
   Brdf = 1,    ///< f_r(ω_o, ω)·max(0, n·ω) (or f_r alone) in the reflection frame, sr⁻¹
