@@ -50,12 +50,6 @@ struct MapDifference {
 /// @param a,b of equal size
 MapDifference compare_maps(const Map& a, const Map& b);
 
-/// A place in a set.
-struct MapPlace {
-  int column = 0;
-  int row = 0;
-};
-
 struct SetDifference {
   Difference difference;
   int maps = 0;

@@ -68,6 +68,12 @@ struct SetInfo {
   int map_count() const { return columns * rows; }
 };
 
+/// The indices of a map in its set.
+struct MapPlace {
+  int column = 0;
+  int row = 0;
+};
+
 /// Makes the maps of a set one by one. Implementations are safe to call from several threads.
 class MapSource {
 public:
