@@ -216,4 +216,9 @@ std::uint64_t TreeSet::tree_bytes(int column, int row) const {
                    static_cast<std::uint64_t>(m_channels), coefficient_bytes(m_type));
 }
 
+bool begins_as_tree_set(const InputFile& file) {
+  // What comes after the name tells damage by text-mode transfers.
+  return file.bytes().size() >= 8 && std::memcmp(file.bytes().data(), file_magic, 5) == 0;
+}
+
 } // namespace haarlight::wavelet

@@ -24,6 +24,12 @@ struct MapOutput {
 /// Declares --criterion, --tolerance, --keep, --coefficients and --luminance.
 void add_compress_options(Tool& tool, MapOutput& output);
 
+/// The compression options as given. @throws UsageError for ones that contradict each other
+wavelet::CompressOptions compress_options(const MapOutput& output, const wavelet::SetInfo& info);
+
+/// @throws UsageError if one of the compression options was given
+void refuse_compress_options(const Tool& tool);
+
 /// Declares -o, the compression options, --conservation-tolerance and --json.
 void add_map_output(Tool& tool, MapOutput& output);
 

@@ -49,6 +49,9 @@ private:
   std::vector<TreeView> m_trees;
 };
 
+/// True if the first bytes are those of a .haar file, which may be damaged all the same.
+bool begins_as_tree_set(const InputFile& file);
+
 /// Writes the trees of a set one after the other, column fastest, then finish(). Memory: the index.
 class TreeSetWriter {
 public:

@@ -1,0 +1,59 @@
+#include <support/map_output.h>
+
+#include <array>
+
+namespace haarlight::tool {
+
+using wavelet::CompressOptions;
+using wavelet::Criterion;
+
+namespace {
+
+constexpr std::array<const char*, 5> compress_option_names = {
+    "--criterion", "--tolerance", "--keep", "--coefficients", "--luminance"};
+
+} // namespace
+
+void add_compress_options(Tool& tool, MapOutput& output) {
+  CompressOptions& options = output.compression;
+  tool.choice(options.threshold.criterion, "--criterion",
+              {{"variance", Criterion::Variance},
+               {"l2", Criterion::L2},
+               {"linf", Criterion::Linf},
+               {"count", Criterion::Count}},
+              "What ranks the coefficients: their share in a sampler's variance, the L2 error, the "
+              "largest error, or as many as --keep says");
+  tool.value(output.tolerance, "--tolerance",
+             "Bound of the criterion, relative; 0 keeps everything [variance 0.0005, for a light's "
+             "world-frame map 0.0001; l2 0.01; linf 0.002]",
+             0, 1e9);
+  tool.value(output.keep, "--keep", "Coefficients to keep per map, in place of --tolerance", 0,
+             1 << 30);
+  tool.choice(
+      options.coefficients, "--coefficients",
+      {{"half", wavelet::CoefficientType::Half}, {"float", wavelet::CoefficientType::Float}},
+      "Precision of stored coefficients: 16 or 32 bits");
+  tool.flag(options.luminance, "--luminance", "Store the luminance in place of RGB");
+}
+
+CompressOptions compress_options(const MapOutput& output, const wavelet::SetInfo& info) {
+  CompressOptions options = output.compression;
+  const bool count = options.threshold.criterion == Criterion::Count;
+  if (count && !output.keep)
+    throw UsageError("--criterion count needs --keep");
+  if (output.tolerance && output.keep)
+    throw UsageError("--tolerance and --keep exclude each other");
+  options.threshold.tolerance =
+      output.tolerance.value_or(wavelet::default_tolerance(info, options.threshold.criterion));
+  if (output.keep)
+    options.threshold.keep = static_cast<std::size_t>(*output.keep);
+  return options;
+}
+
+void refuse_compress_options(const Tool& tool) {
+  for (const char* name : compress_option_names)
+    if (tool.given(name))
+      throw UsageError(std::string(name) + " is for .haar files, the output is an .exr");
+}
+
+} // namespace haarlight::tool
