@@ -217,8 +217,8 @@ Tree multiply(std::span<const TreeView> trees, const MultiplyOptions& options) {
   assert(!trees.empty());
   const TreeFactors factors(trees);
   SynchronousProduct product;
-  int levels = 0;
-  int channels = 1;
+  int levels = options.levels;
+  int channels = options.channels;
   for (const TreeView& tree : trees) {
     levels = std::max(levels, tree.levels);
     channels = std::max(channels, tree.channels);

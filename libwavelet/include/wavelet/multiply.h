@@ -12,10 +12,12 @@ struct MultiplyOptions {
   /// dropped as the tree is made; 0 keeps all that are not zero.
   double tolerance = 0;
   CoefficientType coefficients = CoefficientType::Float;
+  int levels = 0;   ///< of the product; at least what the trees have, which 0 stands for
+  int channels = 1; ///< 3 = RGB even if all trees are grey
 };
 
 /// Π of the trees, colour by colour: exact but for rounding (of floats, or halves as asked for) and
-/// what is dropped. It has as many levels as the finest of them, and RGB unless all are grey.
+/// what is dropped. RGB unless all are grey and nothing else is asked for.
 /// @param trees at least one
 Tree multiply(std::span<const TreeView> trees, const MultiplyOptions& options = {});
 
