@@ -1,6 +1,6 @@
 #include <wavelet/compare.h>
 
-#include <wavelet/parallel.h>
+#include "map_batches.h"
 
 #include <algorithm>
 #include <bit>
@@ -224,21 +224,12 @@ SetDifference compare_sets(const MapSource& a, const MapSource& b, const Progres
   assert(info.size == b.info().size && info.columns == b.info().columns &&
          info.rows == b.info().rows);
   SetSum sum(info);
-  const int count = info.map_count();
-  std::vector<MapDifference> batch(static_cast<std::size_t>(std::min(count, 8 * thread_count())));
-  for (int begin = 0; begin < count; begin += static_cast<int>(batch.size())) {
-    const int filled = std::min(static_cast<int>(batch.size()), count - begin);
-    parallel_for(static_cast<std::size_t>(filled), [&](std::size_t i) {
-      const int index = begin + static_cast<int>(i);
-      const int column = index % info.columns;
-      const int row = index / info.columns;
-      batch[i] = compare_maps(a.make(column, row), b.make(column, row));
-    });
-    for (int i = 0; i < filled; ++i)
-      sum.add(batch[static_cast<std::size_t>(i)]);
-    if (progress)
-      progress(begin + filled, count);
-  }
+  for_each_map<MapDifference>(
+      info, 8, progress,
+      [&](const MapPlace& place, MapDifference& slot) {
+        slot = compare_maps(a.make(place.column, place.row), b.make(place.column, place.row));
+      },
+      [&](const MapDifference& slot) { sum.add(slot); });
   return sum.result();
 }
 

@@ -68,12 +68,13 @@ Picture false_colour_picture(const SignedField& field, int scale) {
     largest = std::max(largest, std::abs(value));
   const int side = scale * field.size;
   Picture picture(side, side + bar_height + figures_height);
-  for (int y = 0; y < side && largest > 0; ++y)
+  for (int y = 0; y < side && largest > 0; ++y) {
+    const auto row = static_cast<std::size_t>(y / scale) * static_cast<std::size_t>(field.size);
     for (int x = 0; x < side; ++x) {
-      const float value =
-          field.values[static_cast<std::size_t>(y / scale * field.size + x / scale)];
+      const float value = field.values[row + static_cast<std::size_t>(x / scale)];
       picture.set(x, y, false_colour(std::cbrt(value / largest)));
     }
+  }
   draw_legend(picture, largest);
   return picture;
 }

@@ -31,10 +31,11 @@ std::string complaint(const Bound& bound) {
 } // namespace
 
 void add_compare_bounds(Tool& tool, CompareBounds& bounds) {
-  tool.value(bounds.l2, "--max-l2",
-             "Largest root mean square difference, in the maps' unit; past any bound the exit code "
-             "is 1",
-             0, most);
+  tool.value(
+      bounds.l2, "--max-l2",
+      "Largest root mean square difference, in the maps' unit, colours weighted by luminance; "
+      "past any bound the exit code is 1",
+      0, most);
   tool.value(bounds.relative_l2, "--max-relative-l2", "The same relative to the norm of A", 0,
              most);
   tool.value(bounds.linf, "--max-linf", "Largest difference of any pixel and channel", 0, most);

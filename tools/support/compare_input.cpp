@@ -14,7 +14,6 @@
 namespace haarlight::tool {
 namespace {
 
-using wavelet::Fold;
 using wavelet::MapPlace;
 using wavelet::SetInfo;
 using wavelet::SetKind;
