@@ -179,7 +179,7 @@ void AdaptiveProduct::add(const Family& family, const detail::Quadrants& quadran
     leaf.reflectance = quadrants.reflectance[q];
     leaf.node = quadrants.children[q];
     leaf.slot = 4 * family.product_node + static_cast<std::int32_t>(q);
-    leaf.level = level;
+    leaf.level = static_cast<std::uint8_t>(level);
     leaf.x = static_cast<std::uint16_t>(2 * family.x + (q & 1U));
     leaf.y = static_cast<std::uint16_t>(2 * family.y + (q >> 1U));
     if (splits) {

@@ -26,7 +26,7 @@ void SynchronousProduct::Frontier::clear(std::size_t factors) {
 
 const ProductTree& SynchronousProduct::build(std::span<const Factor* const> factors,
                                              int finest_level) {
-  assert(!factors.empty() && finest_level >= 1 && finest_level <= 30);
+  assert(!factors.empty() && factors.size() < 256 && finest_level >= 1 && finest_level <= 30);
   m_factors = factors;
   m_finest_level = finest_level;
   m_product.m_nodes.clear();
@@ -43,19 +43,22 @@ const ProductTree& SynchronousProduct::build(std::span<const Factor* const> fact
     m_first_node += static_cast<std::int32_t>(m_now.places.size());
     std::swap(m_now, m_next);
   }
-  m_product.m_leaf_count = m_product.m_leaves.size();
+  m_product.m_leaves.resize(m_leaf_count);
+  m_product.m_leaf_count = m_leaf_count;
   m_product.sum_upwards(m_parent_slots);
   return m_product;
 }
 
 void SynchronousProduct::choose_floors() {
   m_product.m_rests.resize(m_factors.size());
+  m_is_tree.resize(m_factors.size());
   for (std::size_t rest = 0; rest < m_factors.size(); ++rest) {
     Float4 others = {1, 1, 1, 0};
     for (std::size_t f = 0; f < m_factors.size(); ++f)
       if (f != rest)
         others *= absolute(m_factors[f]->mean());
     const TreeView* tree = m_factors[rest]->tree();
+    m_is_tree[rest] = tree != nullptr ? 1 : 0;
     m_product.m_rests[rest] = {tree != nullptr ? *tree : TreeView{}, others * product_floor};
   }
 }
@@ -63,6 +66,7 @@ void SynchronousProduct::choose_floors() {
 /// The root is always a node, even if nothing has detail.
 void SynchronousProduct::start() {
   m_first_node = 0;
+  m_leaf_count = 0;
   m_now.clear(m_factors.size());
   m_now.places.push_back({});
   for (std::size_t f = 0; f < m_factors.size(); ++f) {
@@ -74,6 +78,7 @@ void SynchronousProduct::start() {
 }
 
 void SynchronousProduct::split_run(std::size_t begin, std::size_t count) {
+  m_product.m_leaves.resize(m_leaf_count + 4 * count);
   for (std::size_t f = 0; f < m_factors.size(); ++f)
     m_factors[f]->split({m_now.places.data() + begin, m_now.means[f].data() + begin,
                          m_now.details[f].data() + begin, count},
@@ -102,13 +107,25 @@ void SynchronousProduct::combine(std::size_t square, std::size_t index_in_run) {
       detailed += constant ? 0 : 1;
       rest = constant ? rest : f;
     }
-    const bool ends = detailed == 0 || (detailed == 1 && m_factors[rest]->tree() != nullptr);
+    const bool ends = detailed == 0 || (detailed == 1 && m_is_tree[rest] != 0);
     const std::int32_t slot = 4 * node + static_cast<std::int32_t>(q);
-    if (!ends && !zero && place.level + 1 < m_finest_level)
+    if (!ends && !zero && place.level + 1 < m_finest_level) {
       add_node({place.level + 1, 2 * place.column + (q & 1U), 2 * place.row + (q >> 1U)}, slot,
                quadrant);
-    else
-      add_leaf(place.level + 1, slot, quadrant, rest, !ends);
+      continue;
+    }
+    Float4 others = {1, 1, 1, 0};
+    for (std::size_t f = 0; f < factors; ++f)
+      if (f != rest)
+        others *= m_quadrant_means[f][quadrant];
+    ProductLeaf& leaf = m_product.m_leaves[m_leaf_count];
+    leaf.light = m_quadrant_means[rest][quadrant];
+    leaf.reflectance = others;
+    leaf.node = ends ? m_quadrant_details[rest][quadrant] : no_node;
+    leaf.slot = slot;
+    leaf.level = static_cast<std::uint8_t>(place.level + 1);
+    leaf.rest = static_cast<std::uint8_t>(rest);
+    add_leaf(leaf);
   }
 }
 
@@ -124,23 +141,11 @@ void SynchronousProduct::add_node(const SquarePlace& place, std::int32_t slot,
   m_parent_slots.push_back(slot);
 }
 
-/// @param rest the factor that may have detail left
-/// @param cut  whether more than that is left, and is given up
-void SynchronousProduct::add_leaf(std::int32_t level, std::int32_t slot, std::size_t quadrant,
-                                  std::size_t rest, bool cut) {
-  ProductLeaf& leaf = m_product.m_leaves.emplace_back();
-  leaf.light = m_quadrant_means[rest][quadrant];
-  leaf.reflectance = Float4{1, 1, 1, 0};
-  for (std::size_t f = 0; f < m_factors.size(); ++f)
-    if (f != rest)
-      leaf.reflectance *= m_quadrant_means[f][quadrant];
-  leaf.node = cut ? no_node : m_quadrant_details[rest][quadrant];
-  leaf.slot = slot;
-  leaf.level = level;
-  leaf.rest = static_cast<std::uint32_t>(rest);
-  const auto place = static_cast<std::int32_t>(m_product.m_leaves.size() - 1);
-  m_product.child(slot) = ~place;
-  m_product.set_density(slot, std::max(m_product.density(place).mean, 0.0F));
+void SynchronousProduct::add_leaf(const ProductLeaf& leaf) {
+  const Float4 weights =
+      larger(leaf.reflectance, m_product.m_rests[leaf.rest].floor) * luminance_lanes;
+  m_product.child(leaf.slot) = ~static_cast<std::int32_t>(m_leaf_count++);
+  m_product.set_density(leaf.slot, std::max(lane_sum(leaf.light * weights), 0.0F));
 }
 
 } // namespace haarlight::wavelet

@@ -28,11 +28,12 @@ struct ProductLeaf {
   Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, 0
   Float4 reflectance = {};      ///< product of the others' averages, lanes R, G, B
   std::uint32_t node = no_node; ///< in the tree of the factor that is left
-  std::uint32_t rest = 0;       ///< which factor is left
   std::int32_t slot = -1;       ///< 4 × its parent's product node + quadrant
-  std::int32_t level = 0;
   std::uint16_t x = 0, y = 0;
+  std::uint8_t level = 0;
+  std::uint8_t rest = 0; ///< which factor is left
 };
+static_assert(sizeof(ProductLeaf) == 48);
 
 /// A product ready for sampling. Points are those of the light's square; measures per unit square.
 class ProductTree {

@@ -17,7 +17,7 @@ namespace haarlight::wavelet {
 class SynchronousProduct {
 public:
   /// The product as something to sample, to integrate and to average; valid until the next call.
-  /// @param factors      at least one; trees behind them must outlive the result
+  /// @param factors      1 to 255; trees behind them must outlive the result
   /// @param finest_level squares of this level are not split, whatever they hold; ≥ 1
   const ProductTree& build(std::span<const Factor* const> factors, int finest_level = 15);
 
@@ -40,14 +40,15 @@ private:
   template <std::size_t Factors>
   void combine(std::size_t square, std::size_t index_in_run);
   void add_node(const SquarePlace& place, std::int32_t slot, std::size_t quadrant);
-  void add_leaf(std::int32_t level, std::int32_t slot, std::size_t quadrant, std::size_t rest,
-                bool cut);
+  void add_leaf(const ProductLeaf& leaf);
 
   std::span<const Factor* const> m_factors;
   int m_finest_level = 0;
+  std::vector<std::uint8_t> m_is_tree; ///< by factor
   Frontier m_now;
   Frontier m_next;
   std::int32_t m_first_node = 0; ///< product node of m_now's first square
+  std::size_t m_leaf_count = 0;
   std::vector<std::vector<Float4>> m_quadrant_means;
   std::vector<std::vector<std::uint32_t>> m_quadrant_details;
   std::vector<std::int32_t> m_parent_slots;
