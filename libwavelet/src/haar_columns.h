@@ -1,0 +1,220 @@
+#pragma once
+// Four neighbouring columns of one row of pixels, as vectors that hold one of the columns each:
+// what haar_tile.h lifts. A lane is a pixel of another 4 × 4 block (PlanarColumns), a channel of
+// one block (AnyColumns), or both (RgbColumns). Only moves are done here: no width rounds
+// differently.
+//
+// Everything has internal linkage, as transform_tile.h tells. Vectors go by reference: passed by
+// value, the calling convention would depend on the instruction set.
+
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+namespace haarlight::wavelet::haar {
+namespace {
+
+template <class T, int lanes>
+struct VectorOf {
+  typedef T Type __attribute__((vector_size(lanes * sizeof(T))));
+};
+template <class T>
+struct VectorOf<T, 1> {
+  using Type = T;
+};
+template <class T, int lanes>
+using Vector = typename VectorOf<T, lanes>::Type;
+
+template <class V, class T>
+void load(V& v, const T* from) {
+  std::memcpy(&v, from, sizeof v);
+}
+template <class V, class T>
+void store(T* to, const V& v) {
+  std::memcpy(to, &v, sizeof v);
+}
+
+/// Lane i of `out` is lane place(i, part, lanes) of a and b, counted through.
+template <int (*place)(int, int, int), int part, class Out, class In, std::size_t... i>
+void merge(Out& out, const In& a, const In& b, std::index_sequence<i...>) {
+  constexpr int lanes = sizeof(Out) / sizeof(a[0]);
+  out = __builtin_shufflevector(a, b, place(static_cast<int>(i), part, lanes)...);
+}
+template <int (*place)(int, int, int), int part, class Out, class In>
+void merge(Out& out, const In& a, const In& b) {
+  merge<place, part>(out, a, b, std::make_index_sequence<sizeof(Out) / sizeof(a[0])>());
+}
+
+// Places within groups of four lanes; `part` 0 takes from the lower half of the groups, 1 from the
+// upper, or the even and the odd lanes.
+constexpr int interleaved(int i, int part, int lanes) {
+  return i / 4 * 4 + 2 * part + i / 2 % 2 + i % 2 * lanes;
+}
+constexpr int paired(int i, int part, int lanes) {
+  return i / 4 * 4 + 2 * part + i % 2 + i / 2 % 2 * lanes;
+}
+constexpr int alternating(int i, int part, int lanes) { return i / 2 * 2 + part + i % 2 * lanes; }
+
+constexpr int joined(int i, int /*part*/, int /*lanes*/) { return i; }
+
+/// Transposes the 4 × 4 matrices that the groups of four lanes form. Which way needs one
+/// instruction a merge depends on the width of the elements.
+template <class T, int lanes>
+void transpose_groups(Vector<T, lanes> (&out)[4], const Vector<T, lanes> (&x)[4]) {
+  if constexpr (lanes == 2) {
+    merge<alternating, 0>(out[0], x[0], x[1]);
+    merge<alternating, 1>(out[1], x[0], x[1]);
+    merge<alternating, 0>(out[2], x[2], x[3]);
+    merge<alternating, 1>(out[3], x[2], x[3]);
+    return;
+  }
+  constexpr bool narrow = sizeof(T) == 4;
+  constexpr auto first = narrow ? interleaved : alternating;
+  Vector<T, lanes> t[4];
+  merge<first, 0>(t[0], x[0], x[1]);
+  merge<first, 1>(t[1], x[0], x[1]);
+  merge<first, 0>(t[2], x[2], x[3]);
+  merge<first, 1>(t[3], x[2], x[3]);
+  merge<paired, 0>(out[0], t[0], t[2]);
+  merge<paired, 1>(out[narrow ? 1 : 2], t[0], t[2]);
+  merge<paired, 0>(out[narrow ? 2 : 1], t[1], t[3]);
+  merge<paired, 1>(out[3], t[1], t[3]);
+}
+
+/// One channel: `lanes` blocks side by side. Transposed within groups, block r · lanes / 4 + g
+/// comes to lie in lane 4g + r.
+template <class T, int lanes>
+struct PlanarColumns {
+  using Lanes = Vector<T, lanes>;
+  static constexpr int blocks = lanes;
+
+  static void load_row(Lanes (&x)[4], const T* row, std::size_t /*channels*/) {
+    Lanes t[4];
+    load(t[0], row);
+    load(t[1], row + second);
+    load(t[2], row + third);
+    load(t[3], row + 3 * lanes);
+    transpose_groups<T, lanes>(x, t);
+  }
+  static void store_row(T* row, const Lanes (&x)[4], std::size_t /*channels*/) {
+    Lanes t[4];
+    transpose_groups<T, lanes>(t, x);
+    store(row, t[0]);
+    store(row + second, t[1]);
+    store(row + third, t[2]);
+    store(row + 3 * lanes, t[3]);
+  }
+  static std::size_t parking(int column, std::size_t /*channels*/) {
+    return static_cast<std::size_t>(column) * lanes;
+  }
+  static void load_averages(Lanes& x, const T* averages) {
+    load(x, averages);
+    if constexpr (lanes > 4)
+      merge<lane_of_place, 0>(x, x, x);
+  }
+  static void store_averages(T* averages, const Lanes& x) {
+    Lanes t = x;
+    if constexpr (lanes > 4)
+      merge<place_of_lane, 0>(t, x, x);
+    store(averages, t);
+  }
+
+private:
+  // Two lanes hold half a row of a block: the halves of two blocks are paired.
+  static constexpr int second = (lanes == 2 ? 2 : 1) * lanes;
+  static constexpr int third = (lanes == 2 ? 1 : 2) * lanes;
+
+  static constexpr int lane_of_place(int i, int /*part*/, int n) { return i % 4 * (n / 4) + i / 4; }
+  static constexpr int place_of_lane(int i, int /*part*/, int n) {
+    return i % (n / 4) * 4 + i / (n / 4);
+  }
+};
+
+/// Three interleaved channels of floats: lanes / 4 blocks side by side, the fourth lane of each
+/// idle.
+template <int lanes>
+struct RgbColumns {
+  using Lanes = Vector<float, lanes>;
+  static constexpr int blocks = lanes / 4;
+
+  static void load_row(Lanes (&x)[4], const float* row, std::size_t /*channels*/) {
+    gather<12>(x[0], row);
+    gather<12>(x[1], row + 3);
+    gather<12>(x[2], row + 6);
+    gather<12>(x[3], row + 8); // ends where the block ends
+    merge<next_lane, 0>(x[3], x[3], x[3]);
+  }
+  static void store_row(float* row, const Lanes (&x)[4], std::size_t /*channels*/) {
+    Lanes t[3];
+    merge<packed, 0>(t[0], x[0], x[1]);
+    merge<packed, 1>(t[1], x[1], x[2]);
+    merge<packed, 2>(t[2], x[2], x[3]);
+    scatter<12>(row, t[0]);
+    scatter<12>(row + 4, t[1]);
+    scatter<12>(row + 8, t[2]);
+  }
+  static std::size_t parking(int column, std::size_t /*channels*/) {
+    return static_cast<std::size_t>(column - 1) * lanes;
+  }
+  static void load_averages(Lanes& x, const float* averages) { gather<3>(x, averages); }
+  /// Writes one float past the last block.
+  static void store_averages(float* averages, const Lanes& x) { scatter<3>(averages, x); }
+
+private:
+  static constexpr int next_lane(int i, int /*part*/, int /*lanes*/) {
+    return i % 4 == 3 ? i : i + 1;
+  }
+  /// Four of the twelve channels of four pixels, from the `part` quarter on, out of pixels `part`
+  /// and `part` + 1.
+  static constexpr int packed(int i, int part, int n) {
+    const int channel = 4 * part + i % 4;
+    return i / 4 * 4 + channel % 3 + (channel / 3 == part ? 0 : n);
+  }
+
+  /// Groups of four from places `step` apart, joined in halves.
+  template <int step, class V>
+  static void gather(V& v, const float* from) {
+    if constexpr (sizeof(V) == 16) {
+      load(v, from);
+    } else {
+      constexpr int n = sizeof(V) / 8;
+      Vector<float, n> halves[2];
+      gather<step>(halves[0], from);
+      gather<step>(halves[1], from + n / 4 * step);
+      merge<joined, 0>(v, halves[0], halves[1]);
+    }
+  }
+  template <int step, class V>
+  static void scatter(float* to, const V& v) {
+    for (std::size_t i = 0; i < lanes / 4; ++i)
+      std::memcpy(to + i * step, reinterpret_cast<const char*>(&v) + 16 * i, 16);
+  }
+};
+
+/// `lanes` neighbouring ones of any number of interleaved channels, of one block.
+template <class T, int lanes>
+struct AnyColumns {
+  using Lanes = Vector<T, lanes>;
+  static constexpr int blocks = 1;
+
+  static void load_row(Lanes (&x)[4], const T* row, std::size_t channels) {
+    load(x[0], row);
+    load(x[1], row + channels);
+    load(x[2], row + 2 * channels);
+    load(x[3], row + 3 * channels);
+  }
+  static void store_row(T* row, const Lanes (&x)[4], std::size_t channels) {
+    store(row, x[0]);
+    store(row + channels, x[1]);
+    store(row + 2 * channels, x[2]);
+    store(row + 3 * channels, x[3]);
+  }
+  static std::size_t parking(int column, std::size_t channels) {
+    return static_cast<std::size_t>(column) * channels;
+  }
+  static void load_averages(Lanes& x, const T* averages) { load(x, averages); }
+  static void store_averages(T* averages, const Lanes& x) { store(averages, x); }
+};
+
+} // namespace
+} // namespace haarlight::wavelet::haar
