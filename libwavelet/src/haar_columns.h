@@ -45,44 +45,32 @@ void merge(Out& out, const In& a, const In& b) {
   merge<place, part>(out, a, b, std::make_index_sequence<sizeof(Out) / sizeof(a[0])>());
 }
 
-// Places within groups of four lanes; `part` 0 takes from the lower half of the groups, 1 from the
-// upper, or the even and the odd lanes.
+// Places that one instruction reaches at any width: within groups of four floats, or two or four
+// doubles. `part` is the lower or the upper half of each group, or the even or the odd lanes.
 constexpr int interleaved(int i, int part, int lanes) {
   return i / 4 * 4 + 2 * part + i / 2 % 2 + i % 2 * lanes;
+}
+constexpr int deinterleaved(int i, int part, int lanes) {
+  return i / 4 * 4 + part + i % 2 * 2 + i / 2 % 2 * lanes;
 }
 constexpr int paired(int i, int part, int lanes) {
   return i / 4 * 4 + 2 * part + i % 2 + i / 2 % 2 * lanes;
 }
 constexpr int alternating(int i, int part, int lanes) { return i / 2 * 2 + part + i % 2 * lanes; }
-
 constexpr int joined(int i, int /*part*/, int /*lanes*/) { return i; }
 
-/// Transposes the 4 × 4 matrices that the groups of four lanes form. Which way needs one
-/// instruction a merge depends on the width of the elements.
-template <class T, int lanes>
-void transpose_groups(Vector<T, lanes> (&out)[4], const Vector<T, lanes> (&x)[4]) {
-  if constexpr (lanes == 2) {
-    merge<alternating, 0>(out[0], x[0], x[1]);
-    merge<alternating, 1>(out[1], x[0], x[1]);
-    merge<alternating, 0>(out[2], x[2], x[3]);
-    merge<alternating, 1>(out[3], x[2], x[3]);
-    return;
-  }
-  constexpr bool narrow = sizeof(T) == 4;
-  constexpr auto first = narrow ? interleaved : alternating;
-  Vector<T, lanes> t[4];
-  merge<first, 0>(t[0], x[0], x[1]);
-  merge<first, 1>(t[1], x[0], x[1]);
-  merge<first, 0>(t[2], x[2], x[3]);
-  merge<first, 1>(t[3], x[2], x[3]);
-  merge<paired, 0>(out[0], t[0], t[2]);
-  merge<paired, 1>(out[narrow ? 1 : 2], t[0], t[2]);
-  merge<paired, 0>(out[narrow ? 2 : 1], t[1], t[3]);
-  merge<paired, 1>(out[3], t[1], t[3]);
+/// The two merges of a pair of vectors with one another.
+template <int (*place)(int, int, int), class Lanes>
+void exchange(Lanes& out0, Lanes& out1, const Lanes& a, const Lanes& b) {
+  Lanes t;
+  merge<place, 0>(t, a, b);
+  merge<place, 1>(out1, a, b);
+  out0 = t;
 }
 
-/// One channel: `lanes` blocks side by side. Transposed within groups, block r · lanes / 4 + g
-/// comes to lie in lane 4g + r.
+/// One channel: `lanes` blocks side by side. In a loaded row x[0] and x[1] hold the even and the
+/// odd columns of half of the blocks, x[2] and x[3] those of the other half; split() makes x[0] and
+/// x[2] the first and the third columns of all. Block r · lanes / 4 + g then lies in lane 4g + r.
 template <class T, int lanes>
 struct PlanarColumns {
   using Lanes = Vector<T, lanes>;
@@ -91,19 +79,24 @@ struct PlanarColumns {
   static void load_row(Lanes (&x)[4], const T* row, std::size_t /*channels*/) {
     Lanes t[4];
     load(t[0], row);
-    load(t[1], row + second);
-    load(t[2], row + third);
+    load(t[1], row + lanes);
+    load(t[2], row + 2 * lanes);
     load(t[3], row + 3 * lanes);
-    transpose_groups<T, lanes>(x, t);
+    exchange<to_columns>(x[0], x[1], t[0], t[1]);
+    exchange<to_columns>(x[2], x[3], t[2], t[3]);
   }
   static void store_row(T* row, const Lanes (&x)[4], std::size_t /*channels*/) {
     Lanes t[4];
-    transpose_groups<T, lanes>(t, x);
+    exchange<to_row>(t[0], t[1], x[0], x[1]);
+    exchange<to_row>(t[2], t[3], x[2], x[3]);
     store(row, t[0]);
-    store(row + second, t[1]);
-    store(row + third, t[2]);
+    store(row + lanes, t[1]);
+    store(row + 2 * lanes, t[2]);
     store(row + 3 * lanes, t[3]);
   }
+  static void split(Lanes& x0, Lanes& x2) { exchange<to_fourths>(x0, x2, x0, x2); }
+  static void join(Lanes& x0, Lanes& x2) { exchange<to_halves>(x0, x2, x0, x2); }
+
   static std::size_t parking(int column, std::size_t /*channels*/) {
     return static_cast<std::size_t>(column) * lanes;
   }
@@ -120,9 +113,11 @@ struct PlanarColumns {
   }
 
 private:
-  // Two lanes hold half a row of a block: the halves of two blocks are paired.
-  static constexpr int second = (lanes == 2 ? 2 : 1) * lanes;
-  static constexpr int third = (lanes == 2 ? 1 : 2) * lanes;
+  static constexpr bool narrow = sizeof(T) == 4;
+  static constexpr auto to_columns = narrow ? deinterleaved : alternating;
+  static constexpr auto to_row = narrow ? interleaved : alternating;
+  static constexpr auto to_fourths = narrow ? deinterleaved : lanes == 2 ? alternating : paired;
+  static constexpr auto to_halves = narrow ? interleaved : lanes == 2 ? alternating : paired;
 
   static constexpr int lane_of_place(int i, int /*part*/, int n) { return i % 4 * (n / 4) + i / 4; }
   static constexpr int place_of_lane(int i, int /*part*/, int n) {
@@ -153,6 +148,9 @@ struct RgbColumns {
     scatter<12>(row + 4, t[1]);
     scatter<12>(row + 8, t[2]);
   }
+  static void split(Lanes& /*x0*/, Lanes& /*x2*/) {}
+  static void join(Lanes& /*x0*/, Lanes& /*x2*/) {}
+
   static std::size_t parking(int column, std::size_t /*channels*/) {
     return static_cast<std::size_t>(column - 1) * lanes;
   }
@@ -209,6 +207,9 @@ struct AnyColumns {
     store(row + 2 * channels, x[2]);
     store(row + 3 * channels, x[3]);
   }
+  static void split(Lanes& /*x0*/, Lanes& /*x2*/) {}
+  static void join(Lanes& /*x0*/, Lanes& /*x2*/) {}
+
   static std::size_t parking(int column, std::size_t channels) {
     return static_cast<std::size_t>(column) * channels;
   }

@@ -77,7 +77,10 @@ struct LiftBlocks {
     typename Columns::Lanes z[4];
     lift_rows<Columns>(x, y, b, 0);
     lift_rows<Columns>(z, y, b, 2);
+    Columns::split(x[0], x[2]);
+    Columns::split(z[0], z[2]);
     lift_square<T>(x[0], x[2], z[0], z[2]);
+    Columns::join(z[0], z[2]);
     Columns::store_row(b.row(2), z, b.channels);
     park<Columns>(b, x);
     Columns::store_averages(b.averages, x[0]);
@@ -103,6 +106,7 @@ struct CloseBlocks {
     typename Columns::Lanes x[4];
     Columns::load_averages(x[0], b.averages);
     unpark<Columns>(x, b);
+    Columns::join(x[0], x[2]);
     Columns::store_row(b.first, x, b.channels);
   }
 };
@@ -113,6 +117,7 @@ struct OpenBlocks {
   static void apply(const Blocks<T>& b) {
     typename Columns::Lanes x[4];
     Columns::load_row(x, b.first, b.channels);
+    Columns::split(x[0], x[2]);
     park<Columns>(b, x);
     Columns::store_averages(b.averages, x[0]);
   }
@@ -127,7 +132,10 @@ struct UnliftBlocks {
     Columns::load_averages(x[0], b.averages);
     unpark<Columns>(x, b);
     Columns::load_row(z, b.row(2), b.channels);
+    Columns::split(z[0], z[2]);
     unlift_square<T>(x[0], x[2], z[0], z[2]);
+    Columns::join(x[0], x[2]);
+    Columns::join(z[0], z[2]);
     unlift_rows<Columns>(x, b, 0);
     unlift_rows<Columns>(z, b, 2);
   }
