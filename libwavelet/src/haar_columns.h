@@ -125,21 +125,20 @@ private:
   }
 };
 
-/// Three interleaved channels of floats: lanes / 4 blocks side by side, the fourth lane of each
-/// idle.
-template <int lanes>
+/// Three interleaved channels: lanes / 4 blocks side by side, the fourth lane of each idle.
+template <class T, int lanes>
 struct RgbColumns {
-  using Lanes = Vector<float, lanes>;
+  using Lanes = Vector<T, lanes>;
   static constexpr int blocks = lanes / 4;
 
-  static void load_row(Lanes (&x)[4], const float* row, std::size_t /*channels*/) {
+  static void load_row(Lanes (&x)[4], const T* row, std::size_t /*channels*/) {
     gather<12>(x[0], row);
     gather<12>(x[1], row + 3);
     gather<12>(x[2], row + 6);
     gather<12>(x[3], row + 8); // ends where the block ends
     merge<next_lane, 0>(x[3], x[3], x[3]);
   }
-  static void store_row(float* row, const Lanes (&x)[4], std::size_t /*channels*/) {
+  static void store_row(T* row, const Lanes (&x)[4], std::size_t /*channels*/) {
     Lanes t[3];
     merge<packed, 0>(t[0], x[0], x[1]);
     merge<packed, 1>(t[1], x[1], x[2]);
@@ -154,11 +153,13 @@ struct RgbColumns {
   static std::size_t parking(int column, std::size_t /*channels*/) {
     return static_cast<std::size_t>(column - 1) * lanes;
   }
-  static void load_averages(Lanes& x, const float* averages) { gather<3>(x, averages); }
-  /// Writes one float past the last block.
-  static void store_averages(float* averages, const Lanes& x) { scatter<3>(averages, x); }
+  static void load_averages(Lanes& x, const T* averages) { gather<3>(x, averages); }
+  /// Writes one element past the last block.
+  static void store_averages(T* averages, const Lanes& x) { scatter<3>(averages, x); }
 
 private:
+  static constexpr std::size_t group = 4 * sizeof(T); ///< bytes
+
   static constexpr int next_lane(int i, int /*part*/, int /*lanes*/) {
     return i % 4 == 3 ? i : i + 1;
   }
@@ -171,21 +172,21 @@ private:
 
   /// Groups of four from places `step` apart, joined in halves.
   template <int step, class V>
-  static void gather(V& v, const float* from) {
-    if constexpr (sizeof(V) == 16) {
+  static void gather(V& v, const T* from) {
+    if constexpr (sizeof(V) == group) {
       load(v, from);
     } else {
-      constexpr int n = sizeof(V) / 8;
-      Vector<float, n> halves[2];
+      constexpr int n = sizeof(V) / sizeof(T) / 2;
+      Vector<T, n> halves[2];
       gather<step>(halves[0], from);
       gather<step>(halves[1], from + n / 4 * step);
       merge<joined, 0>(v, halves[0], halves[1]);
     }
   }
   template <int step, class V>
-  static void scatter(float* to, const V& v) {
+  static void scatter(T* to, const V& v) {
     for (std::size_t i = 0; i < lanes / 4; ++i)
-      std::memcpy(to + i * step, reinterpret_cast<const char*>(&v) + 16 * i, 16);
+      std::memcpy(to + i * step, reinterpret_cast<const char*>(&v) + group * i, group);
   }
 };
 

@@ -195,17 +195,19 @@ void apply_to_any(Blocks<T> strip, int x, int width) {
 
 template <class Step, class T, int bytes>
 int apply_to_planar(const Blocks<T>& strip, int x, int width) {
-  x = apply_while_fitting<Step, PlanarColumns<T, bytes / sizeof(T)>>(strip, x, width);
-  if constexpr (bytes > 16)
+  if constexpr (bytes >= 16) {
+    x = apply_while_fitting<Step, PlanarColumns<T, bytes / sizeof(T)>>(strip, x, width);
     x = apply_to_planar<Step, T, bytes / 2>(strip, x, width);
+  }
   return x;
 }
 
-template <class Step, int bytes>
-int apply_to_rgb(const Blocks<float>& strip, int x, int width) {
-  x = apply_while_fitting<Step, RgbColumns<bytes / 4>>(strip, x, width);
-  if constexpr (bytes > 16)
-    x = apply_to_rgb<Step, bytes / 2>(strip, x, width);
+template <class Step, class T, int bytes>
+int apply_to_rgb(const Blocks<T>& strip, int x, int width) {
+  if constexpr (bytes >= 4 * sizeof(T)) {
+    x = apply_while_fitting<Step, RgbColumns<T, bytes / sizeof(T)>>(strip, x, width);
+    x = apply_to_rgb<Step, T, bytes / 2>(strip, x, width);
+  }
   return x;
 }
 
@@ -218,9 +220,8 @@ void apply(const Plane<T>& plane, const Plane<T>& averages, std::size_t channels
     int x = 0;
     if (channels == 1)
       x = apply_to_planar<Step, T, bytes>(strip, x, plane.width);
-    if constexpr (sizeof(T) == 4)
-      if (channels == 3)
-        x = apply_to_rgb<Step, bytes>(strip, x, plane.width);
+    if (channels == 3)
+      x = apply_to_rgb<Step, T, bytes>(strip, x, plane.width);
     apply_to_any<Step, T, bytes>(strip, x, plane.width);
     strip.first += 4 * plane.pitch;
     strip.averages += averages.pitch;
