@@ -35,7 +35,9 @@ double gsl_coefficient(const std::vector<double>& gsl, int size, int level, int 
   const int h = 1 << level;
   const int column = (m & 1) != 0 ? h + x : x;
   const int row = (m & 2) != 0 ? h + y : y;
-  return gsl[static_cast<std::size_t>(row * size + column)] / size;
+  const std::size_t place = static_cast<std::size_t>(row) * static_cast<std::size_t>(size) +
+                            static_cast<std::size_t>(column);
+  return gsl[place] / size;
 }
 
 /// Largest difference from GSL's coefficients, of pixels up to 50.
