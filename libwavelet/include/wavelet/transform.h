@@ -16,14 +16,26 @@
 
 namespace haarlight::wavelet {
 
-/// Transforms `channels` interleaved channels of a size × size image, row 0 first.
-/// @param size a power of two
+/// Transforms `channels` interleaved channels of a size × size image, row 0 first, in place, on the
+/// calling thread. Wider vectors and other processors give the same bits: those of lifting one
+/// 2 × 2 block after another, rows before columns. While it runs it needs room for 1/4096 of the
+/// image, and for 1/15 of a tile of 64 rows and at most 256 pixels a row.
+/// @param image    size² · channels elements; need not be aligned beyond its type
+/// @param size     a power of two
+/// @param channels at least 1; planar colour is a batch of three images of one channel
 void haar_forward(float* image, int size, int channels);
 void haar_forward(double* image, int size, int channels);
 
 /// Exact inverse up to rounding.
 void haar_inverse(float* image, int size, int channels);
 void haar_inverse(double* image, int size, int channels);
+
+/// The same for `count` images that lie one after another without gaps, from several threads (see
+/// <wavelet/parallel.h>), each image on one.
+void haar_forward_batch(float* images, std::size_t count, int size, int channels);
+void haar_forward_batch(double* images, std::size_t count, int size, int channels);
+void haar_inverse_batch(float* images, std::size_t count, int size, int channels);
+void haar_inverse_batch(double* images, std::size_t count, int size, int channels);
 
 /// Index, in pixels, of coefficient m ∈ {1, 2, 3} of the square (level, x, y) after haar_forward().
 inline std::size_t coefficient_index(int size, int level, int x, int y, int m) {
