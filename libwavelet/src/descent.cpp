@@ -23,6 +23,7 @@ void walk_all(TreeDensity* densities, Descent* descents, std::size_t count, Choo
     for (std::size_t k = 0; k < left; ++k) {
       const std::size_t i = active[k];
       detail::step_down(densities[i], descents[i], [&](Float4 w) { return choose(i, w); });
+      densities[i].tree->prefetch(densities[i].node);
       active[next] = static_cast<std::uint8_t>(i);
       next += densities[i].node != no_node ? 1 : 0;
     }

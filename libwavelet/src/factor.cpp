@@ -22,10 +22,11 @@ void TreeFactor::split(const FactorSquares& squares, const FactorQuadrants& out)
       std::fill_n(detail, 4, no_node);
       continue;
     }
-    const auto stored = m_view.details(node).children(squares.mean[i]);
+    const auto means = m_view.details(node).children(squares.mean[i]);
+    const auto nodes = m_view.children(node);
     for (unsigned q = 0; q < 4; ++q) {
-      mean[q] = stored[m_stored[q]];
-      detail[q] = m_view.child(node, m_stored[q]);
+      mean[q] = means[m_stored[q]];
+      detail[q] = nodes[m_stored[q]];
     }
   }
 }

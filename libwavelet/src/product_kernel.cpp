@@ -95,11 +95,13 @@ HAARLIGHT_CPU_CLONES void weigh_families(const TreeView& light,
   for (std::size_t f = 0; f < families.size(); ++f) {
     const Family& family = families[f];
     look_up(reflectance, lanes, 4 * f, out[f]);
-    out[f].light.fill(family.light);
-    if (family.node != no_node)
+    if (family.node != no_node) {
       out[f].light = light.details(family.node).children(family.light);
-    for (unsigned q = 0; q < 4; ++q)
-      out[f].children[q] = light.child(family.node, q);
+      out[f].children = light.children(family.node);
+    } else {
+      out[f].light.fill(family.light);
+      out[f].children.fill(no_node);
+    }
     weigh(floor, family.level + 1, pyramid.levels(), out[f]);
   }
 }

@@ -11,10 +11,10 @@ namespace haarlight::wavelet::detail {
 
 /// The four quadrants q = qx + 2 qy of a family.
 struct Quadrants {
-  unsigned visible = 0;      ///< bit q: some of the quadrant lies above the horizon
-  std::uint32_t children[4]; ///< nodes of the light tree, or no_node
-  Float4 density = {};       ///< the product's average weight; 0 below the horizon
-  Float4 error = {};         ///< what each leaves of the product's variance if it stays a leaf
+  unsigned visible = 0;                  ///< bit q: some of the quadrant lies above the horizon
+  std::array<std::uint32_t, 4> children; ///< nodes of the light tree, or no_node
+  Float4 density = {};                   ///< the product's average weight; 0 below the horizon
+  Float4 error = {}; ///< what each leaves of the product's variance if it stays a leaf
   std::array<Float4, 4> light;
   std::array<Float4, 4> reflectance; ///< lanes R, G, B; 0 below the horizon
 };

@@ -94,58 +94,65 @@ void SynchronousProduct::split_run(std::size_t begin, std::size_t count) {
 template <std::size_t Factors>
 void SynchronousProduct::combine(std::size_t square, std::size_t index_in_run) {
   const std::size_t factors = Factors > 0 ? Factors : m_factors.size();
-  const SquarePlace& place = m_now.places[square];
+  const std::int32_t level = m_now.places[square].level + 1;
   const std::int32_t node = m_first_node + static_cast<std::int32_t>(square);
+  ProductNode result;
   for (unsigned q = 0; q < 4; ++q) {
     const std::size_t quadrant = 4 * index_in_run + q;
-    std::size_t detailed = 0;
-    std::size_t rest = 0;
-    bool zero = false;
-    for (std::size_t f = 0; f < factors; ++f) {
-      const bool constant = m_quadrant_details[f][quadrant] == no_node;
-      zero = zero || (constant && vanishes(m_quadrant_means[f][quadrant]));
-      detailed += constant ? 0 : 1;
-      rest = constant ? rest : f;
-    }
-    const bool ends = detailed == 0 || (detailed == 1 && m_is_tree[rest] != 0);
+    const Rest rest = what_is_left<Factors>(quadrant);
     const std::int32_t slot = 4 * node + static_cast<std::int32_t>(q);
-    if (!ends && !zero && place.level + 1 < m_finest_level) {
-      add_node({place.level + 1, 2 * place.column + (q & 1U), 2 * place.row + (q >> 1U)}, slot,
-               quadrant);
+    if (rest.goes_on && level < m_finest_level) {
+      result.child[q] = add_node(m_now.places[square], q, slot, quadrant);
       continue;
     }
     Float4 others = {1, 1, 1, 0};
     for (std::size_t f = 0; f < factors; ++f)
-      if (f != rest)
+      if (f != rest.factor)
         others *= m_quadrant_means[f][quadrant];
     ProductLeaf& leaf = m_product.m_leaves[m_leaf_count];
-    leaf.light = m_quadrant_means[rest][quadrant];
+    leaf.light = m_quadrant_means[rest.factor][quadrant];
     leaf.reflectance = others;
-    leaf.node = ends ? m_quadrant_details[rest][quadrant] : no_node;
+    leaf.node = rest.cut ? no_node : m_quadrant_details[rest.factor][quadrant];
     leaf.slot = slot;
-    leaf.level = static_cast<std::uint8_t>(place.level + 1);
-    leaf.rest = static_cast<std::uint8_t>(rest);
-    add_leaf(leaf);
+    leaf.level = static_cast<std::uint8_t>(level);
+    leaf.rest = static_cast<std::uint8_t>(rest.factor);
+    const Float4 floor = m_product.m_rests[rest.factor].floor;
+    result.weights[q] =
+        std::max(lane_sum(leaf.light * larger(others, floor) * luminance_lanes), 0.0F);
+    result.child[q] = ~static_cast<std::int32_t>(m_leaf_count++);
   }
+  m_product.m_nodes[static_cast<std::size_t>(node)] = result;
 }
 
-void SynchronousProduct::add_node(const SquarePlace& place, std::int32_t slot,
-                                  std::size_t quadrant) {
-  m_next.places.push_back(place);
+/// Looks at a quadrant: whether it wants splitting, and if not, which factor may have detail left.
+template <std::size_t Factors>
+SynchronousProduct::Rest SynchronousProduct::what_is_left(std::size_t quadrant) const {
+  const std::size_t factors = Factors > 0 ? Factors : m_factors.size();
+  std::size_t detailed = 0;
+  std::size_t last = 0;
+  bool zero = false;
+  for (std::size_t f = 0; f < factors; ++f) {
+    const bool constant = m_quadrant_details[f][quadrant] == no_node;
+    zero = zero || (constant && vanishes(m_quadrant_means[f][quadrant]));
+    detailed += constant ? 0 : 1;
+    last = constant ? last : f;
+  }
+  const bool ends = detailed == 0 || (detailed == 1 && m_is_tree[last] != 0);
+  return {last, !ends && !zero, !ends};
+}
+
+/// @return the new node of a square's quadrant
+std::int32_t SynchronousProduct::add_node(const SquarePlace& square, unsigned q, std::int32_t slot,
+                                          std::size_t quadrant) {
+  m_next.places.push_back(
+      {square.level + 1, 2 * square.column + (q & 1U), 2 * square.row + (q >> 1U)});
   for (std::size_t f = 0; f < m_factors.size(); ++f) {
     m_next.means[f].push_back(m_quadrant_means[f][quadrant]);
     m_next.details[f].push_back(m_quadrant_details[f][quadrant]);
   }
-  m_product.child(slot) = static_cast<std::int32_t>(m_product.m_nodes.size());
   m_product.m_nodes.emplace_back();
   m_parent_slots.push_back(slot);
-}
-
-void SynchronousProduct::add_leaf(const ProductLeaf& leaf) {
-  const Float4 weights =
-      larger(leaf.reflectance, m_product.m_rests[leaf.rest].floor) * luminance_lanes;
-  m_product.child(leaf.slot) = ~static_cast<std::int32_t>(m_leaf_count++);
-  m_product.set_density(leaf.slot, std::max(lane_sum(leaf.light * weights), 0.0F));
+  return static_cast<std::int32_t>(m_product.m_nodes.size() - 1);
 }
 
 } // namespace haarlight::wavelet

@@ -35,8 +35,8 @@ Map lobe_map(int column, float sharpness) {
 }
 
 /// A dim gradient with a few dozen lamps.
-Map light_map(int size) {
-  std::mt19937 generator(5);
+Map light_map(int size, unsigned seed = 5) {
+  std::mt19937 generator(seed);
   std::uniform_real_distribution<float> uniform(0, 1);
   Map map(size);
   for (int y = 0; y < size; ++y)
@@ -201,6 +201,29 @@ void synchronous_product(benchmark::State& state) {
     benchmark::DoNotOptimize(product.build(pointers).nodes().data());
 }
 BENCHMARK(synchronous_product)->Arg(10)->Arg(300)->Arg(5000);
+
+/// The same walk over n trees, by squares that have detail in at least two of them.
+void product_of_n_trees(benchmark::State& state) {
+  const auto n = static_cast<unsigned>(state.range(0));
+  std::vector<Tree> trees;
+  for (unsigned i = 0; i < n; ++i)
+    trees.push_back(tree_of(light_map(map_size, 5 + i), 5e-4));
+  std::vector<TreeFactor> factors;
+  for (const Tree& tree : trees)
+    factors.emplace_back(tree.view());
+  std::vector<const Factor*> pointers;
+  for (const TreeFactor& factor : factors)
+    pointers.push_back(&factor);
+  SynchronousProduct product;
+  std::size_t squares = 0;
+  for (auto _ : state)
+    squares += product.build(pointers).nodes().size();
+  state.counters["squares"] =
+      benchmark::Counter(static_cast<double>(squares), benchmark::Counter::kAvgIterations);
+  state.counters["time/square"] = benchmark::Counter(
+      static_cast<double>(squares), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(product_of_n_trees)->Arg(2)->Arg(3)->Arg(5);
 
 void sample_64_of_dense(benchmark::State& state) {
   DenseProduct product;

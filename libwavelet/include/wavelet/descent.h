@@ -112,7 +112,7 @@ void step_down(TreeDensity& density, Descent& d, Choose choose) {
   const unsigned q = choose(w);
   d.pdf *= quadrant_density(w, q);
   density.mean = means[q];
-  density.node = density.tree->child(density.node, q);
+  density.node = density.tree->child_of_existing(density.node, q);
 }
 
 } // namespace detail

@@ -89,10 +89,6 @@ private:
     return m_nodes[static_cast<std::uint32_t>(slot) / 4].child[slot & 3];
   }
 
-  void set_density(std::int32_t slot, float density) {
-    m_nodes[static_cast<std::uint32_t>(slot) / 4].weights[slot & 3] = density;
-  }
-
   /// A leaf's share in the total.
   float weight(const ProductLeaf& leaf) const {
     return m_nodes[static_cast<std::uint32_t>(leaf.slot) / 4].weights[leaf.slot & 3] *

@@ -31,6 +31,13 @@ private:
     void clear(std::size_t factors);
   };
 
+  /// What a quadrant holds.
+  struct Rest {
+    std::size_t factor; ///< that may have detail, all others are constant or given up
+    bool goes_on;       ///< more than one has detail, and none vanishes
+    bool cut;           ///< more than one has detail
+  };
+
   /// A run of squares is split together: small enough that their quadrants stay in the cache.
   static constexpr std::size_t run = 32;
 
@@ -39,8 +46,10 @@ private:
   void split_run(std::size_t begin, std::size_t count);
   template <std::size_t Factors>
   void combine(std::size_t square, std::size_t index_in_run);
-  void add_node(const SquarePlace& place, std::int32_t slot, std::size_t quadrant);
-  void add_leaf(const ProductLeaf& leaf);
+  template <std::size_t Factors>
+  Rest what_is_left(std::size_t quadrant) const;
+  std::int32_t add_node(const SquarePlace& square, unsigned q, std::int32_t slot,
+                        std::size_t quadrant);
 
   std::span<const Factor* const> m_factors;
   int m_finest_level = 0;

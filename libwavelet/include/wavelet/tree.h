@@ -73,12 +73,36 @@ struct TreeView {
 
   /// Child `q` of a node, or no_node. @param node an existing node or no_node
   std::uint32_t child(std::uint32_t node, unsigned q) const {
-    if (node == no_node)
-      return no_node;
+    return node == no_node ? no_node : child_of_existing(node, q);
+  }
+
+  /// child() of an existing node. Free of branches, which random descents would mispredict.
+  std::uint32_t child_of_existing(std::uint32_t node, unsigned q) const {
     const std::uint32_t link = links[node];
-    if (((link >> q) & 1U) == 0)
-      return no_node;
-    return (link >> 4U) + detail::bits_of_nibble(link & ((1U << q) - 1U));
+    const std::uint32_t present = (link >> q) & 1U;
+    const std::uint32_t index = (link >> 4U) + detail::bits_of_nibble(link & ((1U << q) - 1U));
+    return index | (present - 1U);
+  }
+
+  /// All four children of an existing node.
+  std::array<std::uint32_t, 4> children(std::uint32_t node) const {
+    const std::uint32_t link = links[node];
+    std::uint32_t next = link >> 4U;
+    std::array<std::uint32_t, 4> result;
+    for (unsigned q = 0; q < 4; ++q) {
+      const std::uint32_t present = (link >> q) & 1U;
+      result[q] = next | (present - 1U);
+      next += present;
+    }
+    return result;
+  }
+
+  /// Asks the processor to fetch a node, or nothing if there is none, before it is needed.
+  void prefetch(std::uint32_t node) const {
+    const std::size_t place = node == no_node ? 0 : node;
+    __builtin_prefetch(links + place);
+    __builtin_prefetch(coefficients +
+                       place * 3 * static_cast<std::size_t>(channels) * coefficient_bytes(type));
   }
 
   /// Differences of an existing node.
