@@ -44,6 +44,7 @@ void declare(tool::Tool& app, Options& options) {
 
 std::vector<wavelet::TreeView> views_of(const std::vector<tool::NamedTree>& trees) {
   std::vector<wavelet::TreeView> views;
+  views.reserve(trees.size());
   for (const tool::NamedTree& tree : trees)
     views.push_back(tree.view());
   return views;

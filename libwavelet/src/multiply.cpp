@@ -60,13 +60,19 @@ private:
       for (std::size_t q = 0; q < 4; ++q) {
         const std::int32_t child = nodes[i].child[q];
         m_averages[4 * i + q] =
-            child >= 0 ? mean_of(static_cast<std::size_t>(child)) : of_leaf(~child);
+            child >= 0 ? mean_of(static_cast<std::size_t>(child)) : average_of_leaf(child);
       }
     m_mean = to_rgb(mean_of(0));
   }
 
-  Float4 of_leaf(std::int32_t index) const {
-    const ProductLeaf& leaf = m_product.leaves()[static_cast<std::size_t>(index)];
+  /// The leaf ~child.
+  const ProductLeaf& leaf_of(std::int32_t child) const {
+    const std::int32_t index = ~child;
+    return m_product.leaves()[static_cast<std::size_t>(index)];
+  }
+
+  Float4 average_of_leaf(std::int32_t child) const {
+    const ProductLeaf& leaf = leaf_of(child);
     return leaf.light * leaf.reflectance;
   }
 
@@ -124,7 +130,7 @@ private:
         add_child(index, q, walk_item(child));
         continue;
       }
-      const ProductLeaf& leaf = m_product.leaves()[static_cast<std::size_t>(~child)];
+      const ProductLeaf& leaf = leaf_of(child);
       if (leaf.node != no_node)
         add_child(index, q, tree_item(leaf.rest, leaf.node, leaf.reflectance));
     }
