@@ -2,7 +2,9 @@
 
 #include "tree_builder.h"
 
+#include <wavelet/packed_set.h>
 #include <wavelet/parallel.h>
+#include <wavelet/quantize.h>
 #include <wavelet/transform.h>
 #include <wavelet/tree_set.h>
 
@@ -26,6 +28,8 @@ void describe(const CompressOptions& options, Provenance& provenance) {
     provenance.set("keep", std::to_string(*options.threshold.keep));
   else
     provenance.set("tolerance", number_text(options.threshold.tolerance));
+  if (options.quantize)
+    provenance.set("quantize", "yes");
 }
 
 void measure_pixels(const Map& original, const Map& kept, int channels, CompressReport& report) {
@@ -51,6 +55,14 @@ struct Slot {
   Tree tree;
   CompressReport report;
 };
+
+std::unique_ptr<TreeSink> sink_for(const CompressOptions& options, const SetInfo& info,
+                                   OutputFile& file) {
+  const int channels = options.luminance ? 1 : 3;
+  if (options.packed)
+    return std::make_unique<PackedSetWriter>(file, info, channels, options.coefficients);
+  return std::make_unique<TreeSetWriter>(file, info, channels, options.coefficients);
+}
 
 } // namespace
 
@@ -79,8 +91,13 @@ Tree compress_map(const Map& map, const CompressOptions& options, CompressReport
   report = {};
   report.total_coefficients =
       static_cast<std::uint64_t>(map.size) * static_cast<std::uint64_t>(map.size) - 1;
-  report.kept_coefficients = apply_threshold(transformed, options.threshold);
-  Tree tree = build_tree(transformed, channels, options.coefficients);
+  Quantized quantized;
+  if (options.quantize)
+    quantized = apply_quantization(transformed, options.threshold);
+  else
+    quantized.coefficients = apply_threshold(transformed, options.threshold).coefficients;
+  report.kept_coefficients = quantized.coefficients;
+  Tree tree = build_tree(transformed, channels, options.coefficients, quantized.scale);
   report.nodes = tree.links.size();
   measure_pixels(map, tree.view().reconstruct(tree.levels), channels, report);
   return tree;
@@ -90,7 +107,7 @@ CompressReport compress_set(const MapSource& source, const CompressOptions& opti
                             OutputFile& file, const Progress& progress) {
   SetInfo info = source.info();
   describe(options, info.provenance);
-  TreeSetWriter writer(file, info, options.luminance ? 1 : 3, options.coefficients);
+  const std::unique_ptr<TreeSink> sink = sink_for(options, info, file);
   ConservationMeter meter(info);
   CompressReport total;
   const int count = info.map_count();
@@ -106,13 +123,13 @@ CompressReport compress_set(const MapSource& source, const CompressOptions& opti
       batch[i].tree = compress_map(map, options, batch[i].report);
     });
     for (int i = 0; i < filled; ++i) {
-      writer.add(batch[static_cast<std::size_t>(i)].tree);
+      sink->add(std::move(batch[static_cast<std::size_t>(i)].tree));
       total.add(batch[static_cast<std::size_t>(i)].report);
     }
     if (progress)
       progress(begin + filled, count);
   }
-  writer.finish();
+  sink->finish();
   total.bytes = file.position();
   total.conservation = meter.result();
   return total;

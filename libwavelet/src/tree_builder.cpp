@@ -27,9 +27,9 @@ public:
     m_tree.mean = channels == 3 ? mean : Rgb::Constant(luminance(mean));
   }
 
-  Tree build() {
+  Tree build(float scale) {
     mark_squares();
-    choose_scale();
+    choose_scale(scale);
     m_tree.level_begin.assign(1, 0);
     std::vector<Square> level;
     if (m_levels > 0 && m_present[0][0] != 0)
@@ -83,8 +83,9 @@ private:
     return mask;
   }
 
-  /// A power of two that brings the largest difference just under 2^half_exponent; 1 for floats.
-  void choose_scale() {
+  /// The scale given, or a power of two that brings the largest difference just under
+  /// 2^half_exponent; 1 for floats.
+  void choose_scale(float scale) {
     if (m_tree.type == CoefficientType::Float)
       return;
     float largest = 0;
@@ -92,6 +93,10 @@ private:
       largest = std::max(largest, std::abs(m_map.rgb[i]));
     if (largest == 0)
       return;
+    if (scale > 0 && largest / scale < std::ldexp(1.0F, half_exponent)) {
+      m_tree.scale = scale;
+      return;
+    }
     int exponent = 0;
     std::frexp(largest, &exponent);
     m_tree.scale = std::ldexp(1.0F, std::max(exponent - half_exponent, -100));
@@ -144,8 +149,8 @@ private:
 
 } // namespace
 
-Tree build_tree(const Map& transformed, int channels, CoefficientType type) {
-  return TreeBuilder(transformed, channels, type).build();
+Tree build_tree(const Map& transformed, int channels, CoefficientType type, float scale) {
+  return TreeBuilder(transformed, channels, type).build(scale);
 }
 
 } // namespace haarlight::wavelet

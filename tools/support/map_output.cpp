@@ -18,8 +18,15 @@ using wavelet::CompressReport;
 using wavelet::Conservation;
 using wavelet::Criterion;
 
-constexpr std::array<const char*, 5> compress_option_names = {
-    "--criterion", "--tolerance", "--keep", "--coefficients", "--luminance"};
+constexpr std::array<const char*, 6> threshold_option_names = {
+    "--criterion", "--tolerance", "--keep", "--coefficients", "--luminance", "--quantize"};
+
+template <class Names>
+void refuse(const Tool& tool, const Names& names, const char* why) {
+  for (const char* name : names)
+    if (tool.given(name))
+      throw UsageError(name + std::string(why));
+}
 
 /// The options as given, checked against each other.
 CompressOptions checked_options(const MapOutput& output, const wavelet::SetInfo& info) {
@@ -37,9 +44,8 @@ CompressOptions checked_options(const MapOutput& output, const wavelet::SetInfo&
 }
 
 void refuse_compress_options(const Tool& tool) {
-  for (const char* name : compress_option_names)
-    if (tool.given(name))
-      throw UsageError(std::string(name) + " is for .haar files, the output is an .exr");
+  refuse(tool, threshold_option_names, " is for .haar files, the output is an .exr");
+  refuse(tool, std::array{"--pack"}, " is for .haar files, the output is an .exr");
 }
 
 void describe_set(const wavelet::SetInfo& info, Report& report) {
@@ -69,6 +75,8 @@ void describe(const CompressReport& result, const CompressOptions& options, Repo
     part.add("keep", *options.threshold.keep);
   else
     part.add("tolerance", options.threshold.tolerance);
+  if (options.quantize)
+    part.add("quantize", true);
   part.add("coefficients", result.total_coefficients)
       .add("kept_coefficients", result.kept_coefficients)
       .add("kept_share", share(kept, total))
@@ -148,6 +156,15 @@ void add_compress_options(Tool& tool, MapOutput& output) {
       {{"half", wavelet::CoefficientType::Half}, {"float", wavelet::CoefficientType::Float}},
       "Precision of stored coefficients: 16 or 32 bits");
   tool.flag(options.luminance, "--luminance", "Store the luminance in place of RGB");
+  tool.flag(options.quantize, "--quantize",
+            "Round what is kept as coarsely as the tolerance allows; with l2 the bound holds for "
+            "both. Makes --pack's files much smaller");
+  tool.flag(options.packed, "--pack",
+            "Write the packed form, for transport: maps2haar --unpack gives the mapped form back");
+}
+
+void refuse_threshold_options(const Tool& tool) {
+  refuse(tool, threshold_option_names, " is for maps, the input is a .haar file");
 }
 
 void add_map_output(Tool& tool, MapOutput& output) {

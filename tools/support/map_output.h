@@ -21,8 +21,11 @@ struct MapOutput {
   double conservation_tolerance = 0.01; ///< largest relative error of the set's total luminance
 };
 
-/// Declares --criterion, --tolerance, --keep, --coefficients and --luminance.
+/// Declares --criterion, --tolerance, --keep, --coefficients, --luminance, --quantize and --pack.
 void add_compress_options(Tool& tool, MapOutput& output);
+
+/// @throws UsageError if any of these but --pack was given, which changes no tree
+void refuse_threshold_options(const Tool& tool);
 
 /// Declares -o, the compression options, --conservation-tolerance and --json.
 void add_map_output(Tool& tool, MapOutput& output);
