@@ -50,6 +50,14 @@ void measure_pixels(const Map& original, const Map& kept, int channels, Compress
   }
 }
 
+Map grey(Map map) {
+  for (std::size_t i = 0; i < map.rgb.size(); i += 3) {
+    Eigen::Map<Rgb> pixel(map.rgb.data() + i);
+    pixel = luminance(pixel);
+  }
+  return map;
+}
+
 /// The maps of one batch, compressed in parallel and stored in order.
 struct Slot {
   Tree tree;
@@ -86,7 +94,7 @@ void CompressReport::add(const CompressReport& other) {
 
 Tree compress_map(const Map& map, const CompressOptions& options, CompressReport& report) {
   const int channels = options.luminance ? 1 : 3;
-  Map transformed = map;
+  Map transformed = options.luminance ? grey(map) : map;
   haar_forward(transformed.rgb.data(), map.size, 3);
   report = {};
   report.total_coefficients =

@@ -38,6 +38,8 @@ Tree copy_tree(const TreeSet& set, int column, int row) {
 PackedSetWriter::PackedSetWriter(OutputFile& file, const SetInfo& info, int channels,
                                  CoefficientType type)
     : m_file(file), m_layout(std::make_unique<SetLayout>(info, channels, type)) {
+  if (m_layout->text().size() > largest_packed_text)
+    throw_output_error(file.path(), "cannot be packed: its text section exceeds 1 MiB");
   std::vector<std::byte> frame;
   append_frame(std::as_bytes(std::span(m_layout->text())), frame);
   m_text_bytes = static_cast<std::uint32_t>(frame.size());
