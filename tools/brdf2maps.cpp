@@ -1,6 +1,6 @@
 // brdf2maps: a measured BRDF to a set of maps in the reflection frame.
 #include <support/map_output.h>
-#include <support/tool.h>
+#include <support/program.h>
 
 #include <brdf/bilateral.h>
 #include <brdf/brdf_maps.h>
@@ -57,20 +57,21 @@ brdf::BrdfMapOptions map_options(const Options& o) {
   return maps;
 }
 
+int make_maps(const tool::Tool& app, const Options& options) {
+  const brdf::BrdfMapOptions map_settings = map_options(options);
+  brdf::MeasuredBrdf table(options.input, options.lookup);
+  tool::Report report;
+  report.add("source", table.name()).add("bilateral_asymmetry", brdf::bilateral_asymmetry(table));
+  const brdf::BrdfMaps maps(std::move(table), map_settings);
+  return tool::write_map_set(app, maps, options.output, report);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool app("brdf2maps",
-                 "Resamples a measured BRDF into maps of f_r cos (1/sr) over the sphere, in frames "
-                 "about the mirror direction, one per angle theta_r of the normal and roll phi.");
-  Options options;
-  declare(app, options);
-  return app.run(argc, argv, [&] {
-    const brdf::BrdfMapOptions map_settings = map_options(options);
-    brdf::MeasuredBrdf table(options.input, options.lookup);
-    tool::Report report;
-    report.add("source", table.name()).add("bilateral_asymmetry", brdf::bilateral_asymmetry(table));
-    const brdf::BrdfMaps maps(std::move(table), map_settings);
-    return tool::write_map_set(app, maps, options.output, report);
-  });
+  return tool::run_program(
+      argc, argv, "brdf2maps",
+      "Resamples a measured BRDF into maps of f_r cos (1/sr) over the sphere, in frames "
+      "about the mirror direction, one per angle theta_r of the normal and roll phi.",
+      declare, make_maps);
 }

@@ -1,5 +1,5 @@
 // brdfsynth: MERL-format files of analytic reflectance models.
-#include <support/tool.h>
+#include <support/program.h>
 
 #include <brdf/directional_albedo.h>
 #include <brdf/tabulate.h>
@@ -116,17 +116,18 @@ tool::Report describe(const brdf::MerlTable& table, const std::string& path) {
   return report;
 }
 
+int write_table(const tool::Tool& app, const Options& options) {
+  const brdf::MerlTable table = brdf::tabulate(model_of(options), options.table);
+  brdf::write_merl(options.output, table);
+  app.print(describe(table, options.output));
+  return tool::exit_ok;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool app("brdfsynth", "Writes a MERL-format file of an analytic reflectance model: f_r in "
-                              "1/sr at bin centres, invalid cells marked as in measurements.");
-  Options options;
-  declare(app, options);
-  return app.run(argc, argv, [&] {
-    const brdf::MerlTable table = brdf::tabulate(model_of(options), options.table);
-    brdf::write_merl(options.output, table);
-    app.print(describe(table, options.output));
-    return tool::exit_ok;
-  });
+  return tool::run_program(argc, argv, "brdfsynth",
+                           "Writes a MERL-format file of an analytic reflectance model: f_r in "
+                           "1/sr at bin centres, invalid cells marked as in measurements.",
+                           declare, write_table);
 }

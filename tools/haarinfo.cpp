@@ -1,15 +1,15 @@
 // haarinfo: what a .haar file holds.
 #include <support/inspect.h>
-#include <support/tool.h>
+#include <support/map_choice.h>
+#include <support/program.h>
 #include <support/words.h>
 
+#include <image/exposure.h>
 #include <image/image_exr.h>
 #include <image/png.h>
 
 #include <wavelet/error.h>
 #include <wavelet/packed_set.h>
-
-#include <cmath>
 
 using namespace haarlight;
 
@@ -45,8 +45,8 @@ void declare(tool::Tool& app, Options& options) {
   app.offer_json();
 }
 
+/// A file that is a .haar by its first bytes can be valid or not; any other is bad input.
 int validate(const tool::Tool& app, const std::string& path) {
-  // A file that is a .haar by its first bytes can be valid or not; any other is bad input.
   const auto form = wavelet::file_form(path);
   tool::Report report;
   report.add("file", path);
@@ -65,21 +65,14 @@ int validate(const tool::Tool& app, const std::string& path) {
   }
 }
 
-std::vector<tool::TreeIndex> chosen_trees(const Options& options, const wavelet::TreeSet& set) {
+std::vector<wavelet::MapPlace> chosen_trees(const Options& options, const wavelet::TreeSet& set) {
   if (options.tree.empty())
     return tool::all_trees(set);
-  const wavelet::SetInfo& info = set.info();
-  const double column = options.tree[0];
-  const double row = options.tree[1];
-  if (column != std::floor(column) || row != std::floor(row) || column >= info.columns ||
-      row >= info.rows)
-    throw tool::UsageError("--tree: the set has columns 0 to " + std::to_string(info.columns - 1) +
-                           " and rows 0 to " + std::to_string(info.rows - 1));
-  return {{static_cast<int>(column), static_cast<int>(row)}};
+  return {tool::chosen_map(options.tree, set.info(), "--tree")};
 }
 
 void write_image(const Options& options, const wavelet::TreeSet& set,
-                 const std::vector<tool::TreeIndex>& trees) {
+                 const std::vector<wavelet::MapPlace>& trees) {
   const bool single = !options.tree.empty();
   const int level = options.level.value_or(single ? set.levels() : tool::atlas_level(set));
   if (!single && tool::atlas_side(set, level) > 16384)
@@ -89,14 +82,8 @@ void write_image(const Options& options, const wavelet::TreeSet& set,
                                : tool::atlas(set, level);
   if (tool::has_extension(options.image, ".exr"))
     return image::write_exr(options.image, picture);
-  tool::expose(picture);
+  image::brighten(picture, image::middle_grey_gain(picture));
   image::write_png(options.image, picture, {.tone_map = image::ToneMap::Filmic});
-}
-
-void check(const Options& options) {
-  const std::string& image = options.image;
-  if (!image.empty() && !tool::has_extension(image, ".png") && !tool::has_extension(image, ".exr"))
-    throw tool::UsageError("--image: '" + image + "' ends in neither .png nor .exr");
 }
 
 int inspect(const tool::Tool& app, const Options& options) {
@@ -105,7 +92,7 @@ int inspect(const tool::Tool& app, const Options& options) {
       options.path, options.tree.empty() ? wavelet::Check::Everything : wavelet::Check::WhenUsed);
   if (options.level.value_or(0) > set.levels())
     throw tool::UsageError("--level: the set has levels 0 to " + std::to_string(set.levels()));
-  const std::vector<tool::TreeIndex> trees = chosen_trees(options, set);
+  const std::vector<wavelet::MapPlace> trees = chosen_trees(options, set);
   if (!options.image.empty())
     write_image(options, set, trees);
   if (options.dump == Dump::Csv) {
@@ -120,14 +107,15 @@ int inspect(const tool::Tool& app, const Options& options) {
   return tool::exit_ok;
 }
 
+int look_into(const tool::Tool& app, const Options& options) {
+  tool::check_picture_path(options.image, "--image");
+  return options.validate ? validate(app, options.path) : inspect(app, options);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool app("haarinfo", "Tells what a .haar file holds, checks it and draws it.");
-  Options options;
-  declare(app, options);
-  return app.run(argc, argv, [&] {
-    check(options);
-    return options.validate ? validate(app, options.path) : inspect(app, options);
-  });
+  return tool::run_program(argc, argv, "haarinfo",
+                           "Tells what a .haar file holds, checks it and draws it.", declare,
+                           look_into);
 }

@@ -1,7 +1,7 @@
 // haarrender: renders a scene lit by a probe.
 #include <render/film_output.h>
+#include <support/program.h>
 #include <support/progress.h>
-#include <support/tool.h>
 
 #include <renderer/render.h>
 #include <renderer/scene_file.h>
@@ -104,8 +104,7 @@ int render_scene(const tool::Tool& app, Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool app("haarrender", "Renders a scene of analytic shapes lit by a probe.");
-  Options options;
-  declare(app, options);
-  return app.run(argc, argv, [&] { return render_scene(app, options); });
+  return tool::run_program(argc, argv, "haarrender",
+                           "Renders a scene of analytic shapes lit by a probe.", declare,
+                           render_scene);
 }

@@ -1,5 +1,5 @@
 // haarsheet: pictures side by side, compared with a reference.
-#include <support/tool.h>
+#include <support/program.h>
 #include <support/words.h>
 
 #include <image/contact_sheet.h>
@@ -97,8 +97,7 @@ int make_sheet(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool app("haarsheet", "Puts pictures side by side on one sheet and compares them.");
-  Options options;
-  declare(app, options);
-  return app.run(argc, argv, [&] { return make_sheet(app, options); });
+  return tool::run_program(argc, argv, "haarsheet",
+                           "Puts pictures side by side on one sheet and compares them.", declare,
+                           make_sheet);
 }

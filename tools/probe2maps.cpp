@@ -1,6 +1,6 @@
 // probe2maps: a light probe to one map in the world's frame, or to a table of rotated ones.
 #include <support/map_output.h>
-#include <support/tool.h>
+#include <support/program.h>
 
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
@@ -47,24 +47,25 @@ void check(const probe::MapOptions& maps) {
     throw tool::UsageError("--size must be a power of two from 4, or 0");
 }
 
+int make_maps(const tool::Tool& app, const Options& options) {
+  check(options.maps);
+  const probe::LoadedProbe loaded = probe::read_probe(options.input, options.mapping);
+  app.note(options.input + ": " + loaded.mapping_reason);
+  for (const std::string& note : loaded.notes)
+    app.note(options.input + ": " + note);
+  tool::Report report;
+  report.add("source", loaded.source.get("source"))
+      .add("mapping", probe::mapping_name(loaded.probe.mapping()));
+  const probe::ProbeMaps maps(loaded.probe, options.maps, loaded.source);
+  return tool::write_map_set(app, maps, options.output, report);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool app("probe2maps",
-                 "Resamples a light probe into square maps of radiance (the probe's unit) over the "
-                 "sphere by the equal-area octahedral mapping.");
-  Options options;
-  declare(app, options);
-  return app.run(argc, argv, [&] {
-    check(options.maps);
-    const probe::LoadedProbe loaded = probe::read_probe(options.input, options.mapping);
-    app.note(options.input + ": " + loaded.mapping_reason);
-    for (const std::string& note : loaded.notes)
-      app.note(options.input + ": " + note);
-    tool::Report report;
-    report.add("source", loaded.source.get("source"))
-        .add("mapping", probe::mapping_name(loaded.probe.mapping()));
-    const probe::ProbeMaps maps(loaded.probe, options.maps, loaded.source);
-    return tool::write_map_set(app, maps, options.output, report);
-  });
+  return tool::run_program(
+      argc, argv, "probe2maps",
+      "Resamples a light probe into square maps of radiance (the probe's unit) over the "
+      "sphere by the equal-area octahedral mapping.",
+      declare, make_maps);
 }

@@ -1,5 +1,5 @@
 // probesynth: made-up light probes as angular RGBE pictures.
-#include <support/tool.h>
+#include <support/program.h>
 #include <support/words.h>
 
 #include <probe/probe.h>
@@ -74,18 +74,19 @@ tool::Report describe(const probe::Image& image, const std::string& path) {
   return report;
 }
 
+int draw(const tool::Tool& app, const Options& options) {
+  const auto scene = probe::make_scene(options.kind, options.scene);
+  const probe::Image image = probe::draw_angular(*scene, options.size);
+  probe::write_rgbe(options.output, image, comments(options));
+  app.print(describe(image, options.output));
+  return tool::exit_ok;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool app("probesynth", "Draws a light probe: radiance by direction, as an angular map "
-                               "(right +x, up +y, forward -z at the centre).");
-  Options options;
-  declare(app, options);
-  return app.run(argc, argv, [&] {
-    const auto scene = probe::make_scene(options.kind, options.scene);
-    const probe::Image image = probe::draw_angular(*scene, options.size);
-    probe::write_rgbe(options.output, image, comments(options));
-    app.print(describe(image, options.output));
-    return tool::exit_ok;
-  });
+  return tool::run_program(argc, argv, "probesynth",
+                           "Draws a light probe: radiance by direction, as an angular map "
+                           "(right +x, up +y, forward -z at the centre).",
+                           declare, draw);
 }

@@ -1,6 +1,6 @@
 #include <brdf/measured_brdf.h>
 
-#include "cpu_clones.h"
+#include <wavelet/cpu_clones.h>
 
 #include <wavelet/input_file.h>
 

@@ -1,6 +1,6 @@
 #include "sample_batch.h"
 
-#include "cpu_clones.h"
+#include <wavelet/cpu_clones.h>
 
 #include <wavelet/sphere_map.h>
 

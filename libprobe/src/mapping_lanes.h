@@ -13,6 +13,16 @@ namespace haarlight::probe {
 /// Least value of dω/(du dv), so that a density of directions stays finite.
 inline constexpr float least_density = 1e-6F;
 
+/// direction_and_density() of a mapping that gains nothing from finding both at once.
+template <class Map>
+struct ApartMap {
+  template <class F>
+  static void direction_and_density(F u, F v, F& x, F& y, F& z, F& density_there) {
+    Map::direction(u, v, x, y, z);
+    density_there = Map::density(u, v);
+  }
+};
+
 struct AngularMap {
   static constexpr bool round = true;
 
@@ -60,7 +70,7 @@ struct AngularMap {
   }
 };
 
-struct LatLongMap {
+struct LatLongMap : ApartMap<LatLongMap> {
   static constexpr bool round = false;
 
   template <class F>
@@ -81,12 +91,6 @@ struct LatLongMap {
   }
 
   template <class F>
-  static void direction_and_density(F u, F v, F& x, F& y, F& z, F& density_there) {
-    direction(u, v, x, y, z);
-    density_there = density(u, v);
-  }
-
-  template <class F>
   static F density(F /*u*/, F v) {
     F sine;
     F cosine;
@@ -95,7 +99,7 @@ struct LatLongMap {
   }
 };
 
-struct MirrorBallMap {
+struct MirrorBallMap : ApartMap<MirrorBallMap> {
   static constexpr bool round = true;
 
   template <class F>
@@ -125,18 +129,12 @@ struct MirrorBallMap {
   }
 
   template <class F>
-  static void direction_and_density(F u, F v, F& x, F& y, F& z, F& density_there) {
-    direction(u, v, x, y, z);
-    density_there = density(u, v);
-  }
-
-  template <class F>
   static F density(F /*u*/, F /*v*/) {
     return broadcast<F>(16);
   }
 };
 
-struct OctahedralMap {
+struct OctahedralMap : ApartMap<OctahedralMap> {
   static constexpr bool round = false;
 
   template <class F>
@@ -146,11 +144,6 @@ struct OctahedralMap {
   template <class F>
   static void image(F x, F y, F z, F& u, F& v) {
     wavelet::sphere_to_square(x, y, z, u, v);
-  }
-  template <class F>
-  static void direction_and_density(F u, F v, F& x, F& y, F& z, F& density_there) {
-    direction(u, v, x, y, z);
-    density_there = density(u, v);
   }
 
   template <class F>

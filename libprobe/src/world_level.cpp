@@ -12,17 +12,6 @@ constexpr int reach = 2;
 constexpr int neighbours = (2 * reach + 1) * (2 * reach + 1) - 1;
 constexpr float brightest = 3; ///< times the mean of the neighbours, as for the probe's own pixels
 
-/// Averages squares of two by two pixels.
-wavelet::Map halved(const wavelet::Map& map) {
-  wavelet::Map half(map.size / 2);
-  for (int y = 0; y < half.size; ++y)
-    for (int x = 0; x < half.size; ++x)
-      half.set(x, y,
-               0.25F * ((map.at(2 * x, 2 * y) + map.at(2 * x + 1, 2 * y)) +
-                        (map.at(2 * x, 2 * y + 1) + map.at(2 * x + 1, 2 * y + 1))));
-  return half;
-}
-
 /// The pixel that stands at (x, y), which may lie a few steps over an edge: edges are folded onto
 /// themselves.
 Rgb folded_pixel(const wavelet::Map& map, int x, int y) {
@@ -84,7 +73,7 @@ std::vector<WorldLevel::Light> take_lights(wavelet::Map& map, int along) {
 WorldLevel make_level(const wavelet::Map& map, int size, int map_size) {
   wavelet::Map small = map;
   while (small.size > size)
-    small = halved(small);
+    small = wavelet::halved(small);
   WorldLevel level;
   level.size = small.size;
   const int finer = map_size / small.size;

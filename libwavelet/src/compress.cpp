@@ -1,9 +1,9 @@
 #include <wavelet/compress.h>
 
+#include "map_batches.h"
 #include "tree_builder.h"
 
 #include <wavelet/packed_set.h>
-#include <wavelet/parallel.h>
 #include <wavelet/quantize.h>
 #include <wavelet/transform.h>
 #include <wavelet/tree_set.h>
@@ -118,25 +118,17 @@ CompressReport compress_set(const MapSource& source, const CompressOptions& opti
   const std::unique_ptr<TreeSink> sink = sink_for(options, info, file);
   ConservationMeter meter(info);
   CompressReport total;
-  const int count = info.map_count();
-  std::vector<Slot> batch(static_cast<std::size_t>(std::min(count, 4 * thread_count())));
-  for (int begin = 0; begin < count; begin += static_cast<int>(batch.size())) {
-    const int filled = std::min(static_cast<int>(batch.size()), count - begin);
-    parallel_for(static_cast<std::size_t>(filled), [&](std::size_t i) {
-      const int index = begin + static_cast<int>(i);
-      const int column = index % info.columns;
-      const int row = index / info.columns;
-      const Map map = source.make(column, row);
-      meter.add(column, row, map, source.integral(column, row));
-      batch[i].tree = compress_map(map, options, batch[i].report);
-    });
-    for (int i = 0; i < filled; ++i) {
-      sink->add(std::move(batch[static_cast<std::size_t>(i)].tree));
-      total.add(batch[static_cast<std::size_t>(i)].report);
-    }
-    if (progress)
-      progress(begin + filled, count);
-  }
+  for_each_map<Slot>(
+      info, 4, progress,
+      [&](const MapPlace& place, Slot& slot) {
+        const Map map = source.make(place.column, place.row);
+        meter.add(place.column, place.row, map, source.integral(place.column, place.row));
+        slot.tree = compress_map(map, options, slot.report);
+      },
+      [&](Slot& slot) {
+        sink->add(std::move(slot.tree));
+        total.add(slot.report);
+      });
   sink->finish();
   total.bytes = file.position();
   total.conservation = meter.result();

@@ -70,9 +70,15 @@ inline std::uint64_t tree_size(std::uint64_t nodes, std::uint64_t levels, std::u
                   tree_padding);
 }
 
+/// By the name in the magic; what comes after it tells damage by text-mode transfers.
+inline bool begins_with(std::span<const std::byte> bytes, const unsigned char (&magic)[8]) {
+  return bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, 5) == 0;
+}
+inline bool begins_mapped(std::span<const std::byte> bytes) {
+  return begins_with(bytes, file_magic);
+}
 inline bool begins_packed(std::span<const std::byte> bytes) {
-  return bytes.size() >= sizeof packed_magic &&
-         std::memcmp(bytes.data(), packed_magic, sizeof packed_magic) == 0;
+  return begins_with(bytes, packed_magic);
 }
 
 /// What header and text say of a set.

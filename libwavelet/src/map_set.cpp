@@ -3,6 +3,7 @@
 #include <wavelet/sphere_map.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace haarlight::wavelet {
@@ -12,6 +13,17 @@ Eigen::Array3d map_mean(const Map& map) {
   for (std::size_t i = 0; i < map.rgb.size(); i += 3)
     sum += Eigen::Map<const Rgb>(map.rgb.data() + i).cast<double>();
   return sum / (static_cast<double>(map.size) * map.size);
+}
+
+Map halved(const Map& map) {
+  assert(map.size >= 2);
+  Map half(map.size / 2);
+  for (int y = 0; y < half.size; ++y)
+    for (int x = 0; x < half.size; ++x)
+      half.set(x, y,
+               0.25F * ((map.at(2 * x, 2 * y) + map.at(2 * x + 1, 2 * y)) +
+                        (map.at(2 * x, 2 * y + 1) + map.at(2 * x + 1, 2 * y + 1))));
+  return half;
 }
 
 namespace {

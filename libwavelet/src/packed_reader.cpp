@@ -46,6 +46,8 @@ private:
     m_rules.require(m_bytes.size() >= sizeof m_header, m_bytes.size(),
                     "truncated: the header of a packed .haar takes 160 bytes");
     std::memcpy(&m_header, m_bytes.data(), sizeof m_header);
+    m_rules.require(std::memcmp(m_header.magic, packed_magic, sizeof packed_magic) == 0, 0,
+                    "magic is not 89 48 41 41 50 0d 0a 1a");
     m_rules.require(m_header.version == packed_version, 8, "version of the packed form is not 1");
     m_rules.require(hash_bytes(m_bytes.first(offsetof(PackedHeader, header_checksum))) ==
                         m_header.header_checksum,
@@ -147,8 +149,7 @@ std::optional<FileForm> file_form(const std::string& path) {
   const InputFile file(path);
   if (begins_packed(file.bytes()))
     return FileForm::Packed;
-  if (file.bytes().size() >= sizeof file_magic &&
-      std::memcmp(file.bytes().data(), file_magic, sizeof file_magic) == 0)
+  if (begins_mapped(file.bytes()))
     return FileForm::Mapped;
   return std::nullopt;
 }

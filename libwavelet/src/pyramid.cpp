@@ -129,7 +129,7 @@ Pyramid::EntryTiles Pyramid::make_tiles(const TreeView& tree) const {
   result.pages.resize(m_pages_per_entry);
   for (int l = 0; l <= m_levels; ++l) {
     const int tiles = 1 << tiles_log(l);
-    std::uint32_t* page = result.pages.data() + m_level_offset[static_cast<std::size_t>(l)];
+    std::uint32_t* page = result.pages.data() + first_page(l);
     for (int ty = 0; ty < tiles; ++ty)
       for (int tx = 0; tx < tiles; ++tx, ++page) {
         if (l <= tile_bits ||
@@ -140,9 +140,9 @@ Pyramid::EntryTiles Pyramid::make_tiles(const TreeView& tree) const {
         }
         const int log = tiles_log(l - 1);
         const std::uint32_t parent =
-            result.pages[m_level_offset[static_cast<std::size_t>(l) - 1] +
-                         static_cast<std::uint32_t>(((ty >> (tiles_log(l) - log)) << log) +
-                                                    (tx >> (tiles_log(l) - log)))];
+            result.pages[first_page(l - 1) +
+                         static_cast<std::size_t>(((ty >> (tiles_log(l) - log)) << log) +
+                                                  (tx >> (tiles_log(l) - log)))];
         *page = (parent & absent) != 0 ? parent : absent | static_cast<std::uint32_t>(l - 1);
       }
   }
@@ -152,7 +152,8 @@ Pyramid::EntryTiles Pyramid::make_tiles(const TreeView& tree) const {
 Pyramid::Pyramid(std::span<const TreeView> trees)
     : m_entries(static_cast<int>(trees.size())), m_levels(trees.empty() ? 0 : trees[0].levels) {
   for (int l = 0; l <= m_levels; ++l) {
-    m_level_offset.push_back(static_cast<std::uint32_t>(m_pages_per_entry));
+    m_grids.push_back({power_of_two(l), static_cast<float>((1 << tiles_log(l)) - 1),
+                       static_cast<float>(m_pages_per_entry)});
     m_pages_per_entry += std::size_t{1} << (2 * tiles_log(l));
   }
   std::vector<EntryTiles> tiles(trees.size());
@@ -174,8 +175,31 @@ Pyramid::Pyramid(std::span<const TreeView> trees)
   }
 }
 
+/// At the finest level at or above the place's own that has a tile there.
+Float4 Pyramid::lookup_coarser(const std::uint32_t* pages, const Places& p, std::size_t i) const {
+  const std::uint32_t page = pages[p.page[i]];
+  if ((page & absent) == 0) {
+    detail::Texels upper;
+    detail::Texels lower;
+    detail::load_texels(texels(page, p.texel[i]), upper);
+    detail::load_texels(texels(page, p.texel[i]) + 4 * stored_side, lower);
+    return detail::blend_texels(upper + (lower - upper) * p.fy[i], p.fx[i]);
+  }
+  Places coarser;
+  coarser.u[0] = p.u[i];
+  coarser.v[0] = p.v[i];
+  set_level(coarser, 0, static_cast<int>(page & 15U));
+  place(coarser, 1);
+  return lookup_coarser(pages, coarser, 0);
+}
+
 Float4 Pyramid::lookup(int entry, int level, float u, float v) const {
-  return lookup(entry, places(level, Float4{u}, Float4{v}), 0);
+  Places p;
+  p.u[0] = u;
+  p.v[0] = v;
+  set_level(p, 0, level);
+  place(p, 1);
+  return lookup_coarser(pages(entry), p, 0);
 }
 
 } // namespace haarlight::wavelet

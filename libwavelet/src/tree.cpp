@@ -29,6 +29,25 @@ void reconstruct_square(const TreeView& tree, std::uint32_t node, Float4 mean, M
 
 } // namespace
 
+Details TreeView::converted_details(const std::byte* p) const {
+  Details result = {};
+  Float4* const d[3] = {&result.d1, &result.d2, &result.d3};
+  for (int m = 0; m < 3; ++m)
+    for (int c = 0; c < 3; ++c) {
+      const int source = m * channels + (channels == 3 ? c : 0);
+      float value = 0;
+      if (type == CoefficientType::Float) {
+        std::memcpy(&value, p + 4 * source, 4);
+      } else {
+        std::uint16_t half = 0;
+        std::memcpy(&half, p + 2 * source, 2);
+        value = half_to_float(half);
+      }
+      (*d[m])[c] = value * scale;
+    }
+  return result;
+}
+
 Rgb TreeView::average(int level, int x, int y) const {
   assert(level >= 0 && x >= 0 && y >= 0 && (x >> level) == 0 && (y >> level) == 0);
   Float4 result = to_lanes(mean);

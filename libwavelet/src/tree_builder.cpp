@@ -1,5 +1,7 @@
 #include "tree_builder.h"
 
+#include "coefficient_writer.h"
+
 #include <wavelet/transform.h>
 
 #include <bit>
@@ -7,9 +9,6 @@
 
 namespace haarlight::wavelet {
 namespace {
-
-/// Largest magnitude of a stored half coefficient: leaves room below the half's 65504.
-constexpr int half_exponent = 15;
 
 struct Square {
   int x;
@@ -36,7 +35,7 @@ public:
       level.push_back({0, 0});
     for (int l = 0; l < m_levels; ++l)
       level = append_level(l, level);
-    m_tree.coefficients.resize(m_tree.coefficients.size() + 8);
+    m_writer.finish();
     return std::move(m_tree);
   }
 
@@ -83,23 +82,13 @@ private:
     return mask;
   }
 
-  /// The scale given, or a power of two that brings the largest difference just under
-  /// 2^half_exponent; 1 for floats.
+  /// The scale given, if it is one and the largest difference fits it.
   void choose_scale(float scale) {
-    if (m_tree.type == CoefficientType::Float)
-      return;
     float largest = 0;
     for (std::size_t i = 3; i < m_map.rgb.size(); ++i)
       largest = std::max(largest, std::abs(m_map.rgb[i]));
-    if (largest == 0)
-      return;
-    if (scale > 0 && largest / scale < std::ldexp(1.0F, half_exponent)) {
-      m_tree.scale = scale;
-      return;
-    }
-    int exponent = 0;
-    std::frexp(largest, &exponent);
-    m_tree.scale = std::ldexp(1.0F, std::max(exponent - half_exponent, -100));
+    const bool fits = scale > 0 && largest / scale <= largest_stored_half;
+    m_tree.scale = fits ? scale : coefficient_scale(m_tree.type, largest);
   }
 
   /// Appends a level's nodes and returns the squares of the next.
@@ -109,7 +98,7 @@ private:
     for (const Square& s : squares) {
       const unsigned mask = child_mask(level, s.x, s.y);
       m_tree.links.push_back(static_cast<std::uint32_t>((end + next.size()) << 4U) | mask);
-      append_coefficients(level, s);
+      m_writer.append(details(level, s));
       for (int q = 0; q < 4; ++q)
         if (((mask >> static_cast<unsigned>(q)) & 1U) != 0)
           next.push_back({2 * s.x + (q & 1), 2 * s.y + (q >> 1)});
@@ -118,32 +107,20 @@ private:
     return next;
   }
 
-  void append_coefficients(int level, const Square& s) {
+  Details details(int level, const Square& s) const {
+    Details result;
+    Float4* const d[3] = {&result.d1, &result.d2, &result.d3};
     for (int m = 1; m <= 3; ++m) {
       const float* c = coefficient(level, s.x, s.y, m);
-      if (m_tree.channels == 1)
-        append_value(luminance(Eigen::Map<const Rgb>(c)));
-      else
-        for (int i = 0; i < 3; ++i)
-          append_value(c[i]);
+      *d[m - 1] = Float4{c[0], c[1], c[2], 0};
     }
-  }
-
-  void append_value(float value) {
-    auto& bytes = m_tree.coefficients;
-    const std::size_t at = bytes.size();
-    bytes.resize(at + coefficient_bytes(m_tree.type));
-    if (m_tree.type == CoefficientType::Float) {
-      std::memcpy(bytes.data() + at, &value, 4);
-      return;
-    }
-    const std::uint16_t half = float_to_half(value / m_tree.scale);
-    std::memcpy(bytes.data() + at, &half, 2);
+    return result;
   }
 
   const Map& m_map;
   int m_levels;
   Tree m_tree;
+  CoefficientWriter m_writer{m_tree};
   std::vector<std::vector<std::uint8_t>> m_present;
 };
 

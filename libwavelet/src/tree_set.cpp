@@ -148,4 +148,8 @@ std::uint64_t TreeSet::tree_bytes(int column, int row) const {
   return bytes_of(m_trees[place(column, row)]);
 }
 
+bool begins_as_tree_set(const InputFile& file) {
+  return begins_mapped(file.bytes()) || begins_packed(file.bytes());
+}
+
 } // namespace haarlight::wavelet

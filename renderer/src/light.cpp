@@ -69,7 +69,7 @@ probe::LightSample Light::sample(const Vec2& u) const {
   wavelet::Descent d;
   d.u1 = u.x();
   d.u2 = u.y();
-  descend_tree(d, wavelet::TreeDensity::of(tree()));
+  descend_tree(wavelet::TreeDensity::of(tree()), d);
   return {wavelet::square_to_sphere(wavelet::end_point(d)), d.pdf / wavelet::sphere_area};
 }
 
@@ -78,7 +78,7 @@ float Light::pdf(const Vec3& w) const {
     return m_distribution->pdf(w);
   const Vec2 p = wavelet::sphere_to_square(w);
   wavelet::Descent d;
-  follow_tree(d, wavelet::TreeDensity::of(tree()), p.x(), p.y());
+  follow_tree(wavelet::TreeDensity::of(tree()), p.x(), p.y(), d);
   return d.pdf / wavelet::sphere_area;
 }
 

@@ -6,37 +6,34 @@
 #include <renderer/sampler.h>
 
 #include <wavelet/descent.h>
-#include <wavelet/sphere_map.h>
+
+#include <span>
+#include <vector>
 
 namespace haarlight::renderer {
 
 /// A material's lobe at a point. Densities in sr⁻¹.
 class Lobe {
 public:
-  void prepare(const ShadingPoint& point, const Material& material) {
-    m_density = wavelet::TreeDensity::of(material.lobe(point));
-    m_frame = point.reflection.frame;
-  }
+  void prepare(const ShadingPoint& point, const Material& material);
 
-  DirectionSample sample(const Vec2& u) const {
-    wavelet::Descent d;
-    d.u1 = u.x();
-    d.u2 = u.y();
-    wavelet::descend_tree(d, m_density);
-    const Vec3 local = wavelet::square_to_sphere(wavelet::end_point(d));
-    return {m_frame.to_outer(local), d.pdf / wavelet::sphere_area};
-  }
+  /// Draws a direction for each point of [0, 1)².
+  void sample(std::span<const Vec2> points, std::span<DirectionSample> out);
 
-  float pdf(const Vec3& direction) const {
-    const Vec2 p = wavelet::sphere_to_square(m_frame.to_local(direction));
-    wavelet::Descent d;
-    wavelet::follow_tree(d, m_density, p.x(), p.y());
-    return d.pdf / wavelet::sphere_area;
-  }
+  float pdf(const Vec3& direction) const;
+
+  /// Sets every sample's pdf to this lobe's at its direction.
+  void pdfs(std::span<DirectionSample> samples);
 
 private:
+  /// As many descents from the root of the tree.
+  void start(std::size_t count);
+
   wavelet::TreeDensity m_density;
   Frame m_frame;
+  std::vector<Vec2> m_points;
+  std::vector<wavelet::TreeDensity> m_densities;
+  std::vector<wavelet::Descent> m_descents;
 };
 
 } // namespace haarlight::renderer

@@ -3,8 +3,10 @@
 
 #include <renderer/sampler.h>
 
-#include <wavelet/product.h>
+#include <wavelet/product_tree.h>
 #include <wavelet/sphere_map.h>
+
+#include <algorithm>
 
 namespace haarlight::renderer {
 
@@ -15,8 +17,15 @@ public:
   void sample(const PointSource& points, std::span<DirectionSample> out) override {
     m_points.resize(out.size());
     points.fill(2, m_points);
+    m_descents.resize(out.size());
+    if (m_product->empty()) {
+      std::ranges::fill(out, DirectionSample{Vec3::UnitZ(), 0});
+      return;
+    }
+    m_product->sample(m_points, m_descents);
     for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = m_product->empty() ? DirectionSample{Vec3::UnitZ(), 0} : draw(m_points[i]);
+      out[i] = {m_frame.to_outer(wavelet::square_to_sphere(wavelet::end_point(m_descents[i]))),
+                m_descents[i].pdf / wavelet::sphere_area};
   }
 
   float pdf(const Vec3& direction, std::size_t /*count*/) const override {
@@ -35,13 +44,8 @@ protected:
   Frame m_frame;
 
 private:
-  DirectionSample draw(const Vec2& u) const {
-    const wavelet::Descent d = m_product->sample(u.x(), u.y());
-    return {m_frame.to_outer(wavelet::square_to_sphere(wavelet::end_point(d))),
-            d.pdf / wavelet::sphere_area};
-  }
-
   std::vector<Vec2> m_points;
+  std::vector<wavelet::Descent> m_descents;
 };
 
 } // namespace haarlight::renderer

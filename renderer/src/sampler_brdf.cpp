@@ -15,8 +15,7 @@ public:
   void sample(const PointSource& points, std::span<DirectionSample> out) override {
     m_points.resize(out.size());
     points.fill(1, m_points);
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = m_lobe.sample(m_points[i]);
+    m_lobe.sample(m_points, out);
   }
 
   float pdf(const Vec3& direction, std::size_t /*count*/) const override {

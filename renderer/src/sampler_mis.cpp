@@ -18,18 +18,8 @@ public:
 
   void sample(const PointSource& points, std::span<DirectionSample> out) override {
     const std::size_t from_light = light_share(out.size());
-    m_points.resize(out.size());
-    points.fill(0, std::span(m_points).first(from_light));
-    points.fill(1, std::span(m_points).subspan(from_light));
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      if (i < from_light) {
-        const probe::LightSample s = m_light.sample(m_points[i]);
-        out[i] = {s.direction, mean_density(s.pdf, m_lobe.pdf(s.direction), out.size())};
-      } else {
-        const DirectionSample s = m_lobe.sample(m_points[i]);
-        out[i] = {s.direction, mean_density(m_light.pdf(s.direction), s.pdf, out.size())};
-      }
-    }
+    sample_light(points, out.first(from_light), out.size());
+    sample_lobe(points, out.subspan(from_light), out.size());
   }
 
   float pdf(const Vec3& direction, std::size_t count) const override {
@@ -37,6 +27,28 @@ public:
   }
 
 private:
+  void sample_light(const PointSource& points, std::span<DirectionSample> out, std::size_t count) {
+    m_points.resize(out.size());
+    m_light_pdfs.resize(out.size());
+    points.fill(0, m_points);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const probe::LightSample s = m_light.sample(m_points[i]);
+      out[i].direction = s.direction;
+      m_light_pdfs[i] = s.pdf;
+    }
+    m_lobe.pdfs(out);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i].pdf = mean_density(m_light_pdfs[i], out[i].pdf, count);
+  }
+
+  void sample_lobe(const PointSource& points, std::span<DirectionSample> out, std::size_t count) {
+    m_points.resize(out.size());
+    points.fill(1, m_points);
+    m_lobe.sample(m_points, out);
+    for (DirectionSample& s : out)
+      s.pdf = mean_density(m_light.pdf(s.direction), s.pdf, count);
+  }
+
   static std::size_t light_share(std::size_t count) { return (count + 1) / 2; }
 
   static float mean_density(float light, float lobe, std::size_t count) {
@@ -48,6 +60,7 @@ private:
   const Light& m_light;
   Lobe m_lobe;
   std::vector<Vec2> m_points;
+  std::vector<float> m_light_pdfs;
 };
 
 } // namespace

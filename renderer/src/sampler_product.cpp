@@ -3,6 +3,8 @@
 #include "product_tree_sampler.h"
 #include "sampler_kinds.h"
 
+#include <wavelet/adaptive_product.h>
+
 namespace haarlight::renderer {
 namespace {
 

@@ -7,7 +7,7 @@
 #include <probe/probe_maps.h>
 #include <wavelet/error.h>
 #include <wavelet/sphere_map.h>
-#include <wavelet/symmetry.h>
+#include <wavelet/synchronous_product.h>
 
 #include <algorithm>
 
@@ -73,13 +73,15 @@ private:
       return place.product;
     const TreeTable& rolls = *material.roll_table();
     const wavelet::StoredRoll stored = wavelet::stored_roll(rolls.info(), roll);
-    place = {&material, index, column, roll,
-             wavelet::TableProduct::build(m_table.tree(cell.column, cell.row),
-                                          rolls.tree(column, stored.row), stored.symmetry)};
+    const wavelet::TreeFactor light(m_table.tree(cell.column, cell.row));
+    const wavelet::TreeFactor lobe(rolls.tree(column, stored.row), stored.symmetry);
+    const wavelet::Factor* const factors[] = {&light, &lobe};
+    place = {&material, index, column, roll, m_builder.build(factors)};
     return place.product;
   }
 
   const TreeTable& m_table;
+  wavelet::SynchronousProduct m_builder;
   std::vector<Cached> m_cache = std::vector<Cached>(cache_size);
 };
 

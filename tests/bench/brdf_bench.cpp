@@ -1,32 +1,20 @@
 // Times of the BRDF library's inner loops, one thread: brdf_bench [FILE.binary]
 
+#include "timing.h"
+
 #include <brdf/brdf_maps.h>
 #include <brdf/directional_albedo.h>
 #include <brdf/tabulate.h>
 
 #include <wavelet/sphere_map.h>
 
-#include <cstdio>
-#include <ctime>
+#include <string>
 
 using namespace haarlight;
 using namespace haarlight::brdf;
+using bench::report;
 
 namespace {
-
-/// Processor time, which other programs on the machine do not lengthen.
-double seconds_since(std::clock_t start) {
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
-template <class Work>
-void report(const char* what, double count, const Work& work) {
-  const auto start = std::clock();
-  const double result = work();
-  const double seconds = seconds_since(start);
-  std::printf("%-44s %9.3f ms %9.2f ns each (check %g)\n", what, 1e3 * seconds,
-              1e9 * seconds / count, result);
-}
 
 /// A direction of the upper hemisphere; neighbouring i are neighbours if `coherent`.
 Vec3 direction(int i, double step) {

@@ -1,5 +1,7 @@
 // Times of the probe library's inner loops, one thread: probe_bench [PROBE]
 
+#include "timing.h"
+
 #include <probe/light_distribution.h>
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
@@ -13,28 +15,16 @@
 
 using namespace haarlight;
 using namespace haarlight::probe;
+using bench::report;
+using bench::seconds_since;
 
 namespace {
-
-/// Processor time, which other programs on the machine do not lengthen.
-double seconds_since(std::clock_t start) {
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 /// Points that fill the square evenly.
 Vec2 spread_point(int i) {
   const double a = i * 0.7548776662466927;
   const double b = i * 0.5698402909980532;
   return {static_cast<float>(a - static_cast<int>(a)), static_cast<float>(b - static_cast<int>(b))};
-}
-
-template <class Work>
-void report(const char* what, double count, const Work& work) {
-  const auto start = std::clock();
-  const double result = work();
-  const double seconds = seconds_since(start);
-  std::printf("%-44s %9.3f ms %9.2f ns each (check %g)\n", what, 1e3 * seconds,
-              1e9 * seconds / count, result);
 }
 
 void time_look_ups(const Probe& probe) {

@@ -1,9 +1,10 @@
 // Products and their sampling. Rivals in the same run: the dense way, multiplying two 512² maps and
 // building the mip pyramid that a descent needs, and sampling such a pyramid.
 
+#include <wavelet/adaptive_product.h>
 #include <wavelet/compress.h>
-#include <wavelet/product.h>
 #include <wavelet/sphere_map.h>
+#include <wavelet/synchronous_product.h>
 
 #include <benchmark/benchmark.h>
 
@@ -103,6 +104,12 @@ RotatedReflectance reflectance_at(const Pyramid& lobes, std::mt19937& generator)
   return r;
 }
 
+void draw_points(std::mt19937& generator, std::span<Vec2> points) {
+  for (Vec2& p : points)
+    p = Vec2(static_cast<float>(generator() >> 8U), static_cast<float>(generator() >> 8U)) *
+        0x1p-24F;
+}
+
 void adaptive_product(benchmark::State& state) {
   AdaptiveProduct product(light_tree().view());
   const Pyramid& lobes = pyramid(static_cast<int>(state.range(0)));
@@ -122,10 +129,13 @@ void sample_64_of_product(benchmark::State& state) {
   std::mt19937 generator(1);
   const ProductTree& tree =
       product.build(reflectance_at(pyramid(static_cast<int>(state.range(0))), generator), {});
-  std::uniform_real_distribution<float> uniform(0, 1);
-  for (auto _ : state)
-    for (int i = 0; i < 64; ++i)
-      benchmark::DoNotOptimize(tree.sample(uniform(generator), uniform(generator)));
+  std::vector<Vec2> points(64);
+  std::vector<Descent> descents(64);
+  for (auto _ : state) {
+    draw_points(generator, points);
+    tree.sample(points, descents);
+    benchmark::DoNotOptimize(descents.data());
+  }
 }
 BENCHMARK(sample_64_of_product)->Arg(10)->Arg(300)->Arg(5000);
 
@@ -181,22 +191,27 @@ void dense_product(benchmark::State& state) {
 }
 BENCHMARK(dense_product)->Arg(300);
 
-void table_product(benchmark::State& state) {
+void synchronous_product(benchmark::State& state) {
   const Tree light = tree_of(light_map(map_size), 5e-4);
   const Tree lobe = tree_of(lobe_map(2, static_cast<float>(state.range(0))), 5e-4);
+  const TreeFactor factors[2] = {TreeFactor(light.view()), TreeFactor(lobe.view())};
+  const Factor* const pointers[2] = {&factors[0], &factors[1]};
+  SynchronousProduct product;
   for (auto _ : state)
-    benchmark::DoNotOptimize(TableProduct::build(light.view(), lobe.view(), {}).integral());
+    benchmark::DoNotOptimize(product.build(pointers).nodes().data());
 }
-BENCHMARK(table_product)->Arg(10)->Arg(300)->Arg(5000);
+BENCHMARK(synchronous_product)->Arg(10)->Arg(300)->Arg(5000);
 
 void sample_64_of_dense(benchmark::State& state) {
   DenseProduct product;
   product.build(light_map(map_size), lobe_map(2, 300));
   std::mt19937 generator(1);
-  std::uniform_real_distribution<float> uniform(0, 1);
-  for (auto _ : state)
-    for (int i = 0; i < 64; ++i)
-      benchmark::DoNotOptimize(product.sample(uniform(generator), uniform(generator)));
+  std::vector<Vec2> points(64);
+  for (auto _ : state) {
+    draw_points(generator, points);
+    for (const Vec2& p : points)
+      benchmark::DoNotOptimize(product.sample(p.x(), p.y()));
+  }
 }
 BENCHMARK(sample_64_of_dense);
 

@@ -2,6 +2,8 @@
 #include "fixture.h"
 
 #include <image/contact_sheet.h>
+#include <image/exposure.h>
+#include <image/false_colour.h>
 #include <image/image_exr.h>
 #include <image/png.h>
 
@@ -125,4 +127,34 @@ TEST_CASE("a contact sheet shows every picture and its caption", "[image]") {
     }
   CHECK(reds == 240);
   CHECK(whites == 18 + 20); // pixels of the glyphs A and B
+}
+
+TEST_CASE("signed fields shrink to what stands out, and show their sign", "[image]") {
+  const image::SignedField field{4, {1, -2, 0, 0, 0.5F, 0, 0, 0.1F, 0, 0, 3, 4, 0, -1, -5, 2}};
+  const image::SignedField half = image::halved(field);
+  CHECK(half.size == 2);
+  CHECK(half.values == std::vector<float>{-2, 0.1F, -1, -5});
+  CHECK((image::false_colour(0) == Rgb::Zero()).all());
+  for (const float t : {0.1F, 0.5F, 1.0F}) {
+    CHECK(image::false_colour(t)[0] > image::false_colour(t)[2]);
+    CHECK((image::false_colour(t) == image::false_colour(-t).reverse()).all());
+  }
+  const Picture picture = image::false_colour_picture(half, 160);
+  CHECK(picture.width == 320);
+  CHECK(picture.height == 320 + 22);
+  CHECK((picture.at(319, 319) == image::false_colour(-1)).all());
+  CHECK((picture.at(10, 10) == image::false_colour(std::cbrt(-0.4F))).all());
+  CHECK(picture.at(1, 325)[2] > picture.at(1, 325)[0]); // the legend runs from below to above zero
+  CHECK(picture.at(318, 325)[0] > picture.at(318, 325)[2]);
+}
+
+TEST_CASE("a picture is brightened to middle grey, a black one not at all", "[image]") {
+  Picture picture = ramp(9, 9);
+  image::brighten(picture, image::middle_grey_gain(picture));
+  double sum = 0;
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 9; ++x)
+      sum += static_cast<double>(luminance(picture.at(x, y)));
+  CHECK(sum / 81 == Approx(0.18));
+  CHECK(image::middle_grey_gain(Picture(3, 3)) == 1);
 }

@@ -1,8 +1,9 @@
 #include "chi_square.h"
+#include "product_of.h"
 #include "random_map.h"
 
+#include <wavelet/adaptive_product.h>
 #include <wavelet/compress.h>
-#include <wavelet/product.h>
 #include <wavelet/sphere_map.h>
 
 #include <catch2/catch.hpp>
@@ -64,14 +65,14 @@ RotatedReflectance reflectance_at(const Pyramid& pyramid, const Vec3& n, const V
 
 } // namespace
 
-TEST_CASE("table products have the integral and the averages of the dense product") {
+TEST_CASE("products in one frame have the integral of the dense product") {
   for (const double tolerance : {0.0, 0.1}) {
     const Tree light = tree_of(random_map(32, 1), tolerance);
     const Tree lobe = tree_of(lobe_map(32, 0), tolerance);
     for (int turns = 0; turns < 4; ++turns)
       for (const bool mirrored : {false, true}) {
         const SquareSymmetry symmetry = {turns, mirrored};
-        const ProductTree product = TableProduct::build(light.view(), lobe.view(), symmetry);
+        const ProductTree product = product_of(light.view(), lobe.view(), symmetry);
         const Map dense =
             dense_product(light.view().reconstruct(5), lobe.view().reconstruct(5), symmetry);
         const Rgb expected = map_mean(dense).cast<float>();
@@ -80,12 +81,12 @@ TEST_CASE("table products have the integral and the averages of the dense produc
   }
 }
 
-TEST_CASE("the density of a table product is the product's luminance") {
+TEST_CASE("the density of a product in one frame is the product's luminance") {
   const Map light = random_map(32, 3);
   const Map lobe = lobe_map(32, 0);
   const Tree light_tree = tree_of(light, 0);
   const Tree lobe_tree = tree_of(lobe, 0);
-  const ProductTree product = TableProduct::build(light_tree.view(), lobe_tree.view(), {});
+  const ProductTree product = product_of(light_tree.view(), lobe_tree.view());
   const double total = luminance(product.integral());
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) {
@@ -98,10 +99,10 @@ TEST_CASE("the density of a table product is the product's luminance") {
     }
 }
 
-TEST_CASE("table products sample what their pdf says") {
+TEST_CASE("products in one frame sample what their pdf says") {
   const Tree light = tree_of(random_map(64, 4), 0.2);
   const Tree lobe = tree_of(lobe_map(64, 0), 0.05);
-  const ProductTree product = TableProduct::build(light.view(), lobe.view(), {1, true});
+  const ProductTree product = product_of(light.view(), lobe.view(), {1, true});
   std::mt19937 generator(1);
   std::uniform_real_distribution<float> uniform(0, 1);
   const auto result = chi_square(
@@ -254,7 +255,7 @@ TEST_CASE("nothing to sample is said so") {
   const Pyramid pyramid(views);
   AdaptiveProduct builder(light.view());
   CHECK(builder.build(reflectance_at(pyramid, Vec3::UnitZ(), Vec3::UnitZ(), 0), {}).empty());
-  CHECK(TableProduct::build(light.view(), lobe.view(), {}).empty());
+  CHECK(product_of(light.view(), lobe.view()).empty());
 }
 
 TEST_CASE("folded rolls stand for the roll they should") {

@@ -36,6 +36,27 @@ Rgb plain_average(const Map& map, int level, int x, int y) {
   return (sum / (static_cast<double>(side) * side)).cast<float>();
 }
 
+/// Every square of every level, and one level more, against the pixels of the reconstruction.
+void require_dense_averages(const TreeView& tree) {
+  const Map dense = tree.reconstruct(tree.levels);
+  for (int level = 0; level <= tree.levels; ++level)
+    for (int y = 0; y < (1 << level); ++y)
+      for (int x = 0; x < (1 << level); ++x) {
+        const Rgb difference = tree.average(level, x, y) - plain_average(dense, level, x, y);
+        if (difference.abs().maxCoeff() > 5e-5F)
+          FAIL("level " << level << " square " << x << ", " << y);
+      }
+  for (int y = 0; y < 2 * dense.size; ++y)
+    for (int x = 0; x < 2 * dense.size; ++x) {
+      const Rgb pixel = dense.at(x / 2, y / 2);
+      const float step = 0.5F / static_cast<float>(dense.size);
+      const float u = step * (static_cast<float>(x) + 0.5F);
+      const float v = step * (static_cast<float>(y) + 0.5F);
+      if ((tree.average(tree.levels + 1, x, y) != pixel).any() || (tree.value(u, v) != pixel).any())
+        FAIL("point " << u << ", " << v);
+    }
+}
+
 } // namespace
 
 TEST_CASE("halves round to nearest even and come back exactly") {
@@ -82,6 +103,29 @@ TEST_CASE("averages over squares are those of the pixels, at every level") {
       }
   CHECK((tree.view().value(0.51F, 0.99F) - map.at(16, 31)).abs().maxCoeff() < 5e-5F);
   CHECK((tree.view().value(1.0F, 0.0F) - map.at(31, 0)).abs().maxCoeff() < 5e-5F);
+}
+
+TEST_CASE("averages and values of sparse trees are those of the dense reconstruction") {
+  struct Kind {
+    CoefficientType type;
+    bool luminance;
+    bool sparse;
+    double tolerance;
+  };
+  const std::vector<Kind> kinds = {{CoefficientType::Half, false, false, 0.3},
+                                   {CoefficientType::Half, true, false, 0.1},
+                                   {CoefficientType::Float, false, true, 0.05},
+                                   {CoefficientType::Float, true, true, 0}};
+  unsigned seed = 20;
+  for (const Kind& kind : kinds) {
+    CompressOptions sparse = options(Criterion::L2, kind.tolerance, kind.type);
+    sparse.luminance = kind.luminance;
+    CompressReport report;
+    const Tree tree = compress_map(random_map(64, ++seed, kind.sparse), sparse, report);
+    REQUIRE(tree.links.size() > 1);
+    REQUIRE(report.kept_coefficients < report.total_coefficients);
+    require_dense_averages(tree.view());
+  }
 }
 
 TEST_CASE("l2 and linf tolerances bound the errors they name, and nearly reach the first") {

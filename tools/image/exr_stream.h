@@ -1,12 +1,11 @@
 #pragma once
-// OpenEXR's streams over the toolkit's files, and a look at a file before OpenEXR sees it.
+// OpenEXR's streams over the toolkit's files.
 // For the sources of this folder only: it shows OpenEXR's headers.
 
 #include <wavelet/error.h>
 #include <wavelet/input_file.h>
 #include <wavelet/output_file.h>
 
-#include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 
 #include <cstdint>
@@ -54,11 +53,6 @@ private:
   std::span<const std::byte> m_bytes;
   std::uint64_t m_position = 0;
 };
-
-/// The header of a single-part EXR image, read without believing sizes in it: its attributes lie
-/// within the file, and the file is long enough for the table of its tiles or lines.
-/// @throws Error(Input)
-Imf::Header read_exr_header(const InputFile& file);
 
 /// A check for OutputFile::commit: the file opens and is complete. @throws Error(Output)
 void check_exr_complete(const std::string& temporary_path);

@@ -1,5 +1,6 @@
 #include <image/image_exr.h>
 
+#include <image/exr_header.h>
 #include <image/exr_stream.h>
 #include <image/map_set_exr.h>
 

@@ -12,6 +12,7 @@ namespace {
 
 using wavelet::Details;
 using wavelet::Map;
+using wavelet::MapPlace;
 using wavelet::TreeSet;
 using wavelet::TreeView;
 
@@ -46,7 +47,7 @@ void measure_masses(const TreeView& tree, int level, TreeFigures& figures) {
   figures.negative_mass /= pixels;
 }
 
-TreeFigures measure_tree(const TreeSet& set, TreeIndex index, int level) {
+TreeFigures measure_tree(const TreeSet& set, MapPlace index, int level) {
   const TreeView& tree = set.tree(index.column, index.row);
   TreeFigures figures;
   figures.index = index;
@@ -67,15 +68,15 @@ TreeFigures measure_tree(const TreeSet& set, TreeIndex index, int level) {
 
 } // namespace
 
-std::vector<TreeIndex> all_trees(const TreeSet& set) {
-  std::vector<TreeIndex> trees;
+std::vector<MapPlace> all_trees(const TreeSet& set) {
+  std::vector<MapPlace> trees;
   for (int row = 0; row < set.info().rows; ++row)
     for (int column = 0; column < set.info().columns; ++column)
       trees.push_back({column, row});
   return trees;
 }
 
-std::vector<TreeFigures> measure_trees(const TreeSet& set, const std::vector<TreeIndex>& trees,
+std::vector<TreeFigures> measure_trees(const TreeSet& set, const std::vector<MapPlace>& trees,
                                        int level) {
   std::vector<TreeFigures> figures(trees.size());
   parallel_for(trees.size(),
@@ -101,7 +102,7 @@ struct Square {
 constexpr std::size_t chunk_bytes = std::size_t{1} << 16;
 
 /// Nodes lie breadth first, so that children come in the order in which their parents do.
-void dump_tree(const TreeSet& set, TreeIndex index,
+void dump_tree(const TreeSet& set, MapPlace index,
                const std::function<void(const std::string&)>& sink) {
   const TreeView& tree = set.tree(index.column, index.row);
   const std::string start = std::to_string(index.column) + ',' + std::to_string(index.row) + ',';
@@ -131,10 +132,10 @@ void dump_tree(const TreeSet& set, TreeIndex index,
 
 } // namespace
 
-void dump_csv(const TreeSet& set, const std::vector<TreeIndex>& trees,
+void dump_csv(const TreeSet& set, const std::vector<MapPlace>& trees,
               const std::function<void(const std::string&)>& sink) {
   sink("column,row,level,x,y,type,r,g,b\n");
-  for (const TreeIndex index : trees)
+  for (const MapPlace index : trees)
     dump_tree(set, index, sink);
 }
 

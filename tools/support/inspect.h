@@ -15,12 +15,6 @@
 
 namespace haarlight::tool {
 
-/// A stored tree by its indices.
-struct TreeIndex {
-  int column = 0;
-  int row = 0;
-};
-
 struct LevelFigures {
   std::uint64_t nodes = 0;   ///< squares with wavelets
   std::uint64_t nonzero = 0; ///< coefficients (RGB triples) that are not zero
@@ -28,7 +22,7 @@ struct LevelFigures {
 };
 
 struct TreeFigures {
-  TreeIndex index;
+  wavelet::MapPlace index;
   std::uint64_t nodes = 0;
   std::uint64_t bytes = 0; ///< in the file
   Rgb mean = Rgb::Zero();
@@ -39,11 +33,11 @@ struct TreeFigures {
 };
 
 /// All trees of a set, column fastest.
-std::vector<TreeIndex> all_trees(const wavelet::TreeSet& set);
+std::vector<wavelet::MapPlace> all_trees(const wavelet::TreeSet& set);
 
 /// Figures of some trees; masses are those of the reconstruction at `level`. From several threads.
 std::vector<TreeFigures> measure_trees(const wavelet::TreeSet& set,
-                                       const std::vector<TreeIndex>& trees, int level);
+                                       const std::vector<wavelet::MapPlace>& trees, int level);
 
 /// `mapped` or `packed`.
 const char* form_name(wavelet::FileForm form);
@@ -65,11 +59,8 @@ image::Picture atlas(const wavelet::TreeSet& set, int level);
 /// Pixels along the atlas' longer side.
 std::int64_t atlas_side(const wavelet::TreeSet& set, int level);
 
-/// Scales a picture so that its mean luminance becomes middle grey (0.18); black stays black.
-void expose(image::Picture& picture);
-
 /// Lines `column,row,level,x,y,type,r,g,b`: the differences of every node, a few at a time.
-void dump_csv(const wavelet::TreeSet& set, const std::vector<TreeIndex>& trees,
+void dump_csv(const wavelet::TreeSet& set, const std::vector<wavelet::MapPlace>& trees,
               const std::function<void(const std::string&)>& sink);
 
 } // namespace haarlight::tool

@@ -51,7 +51,7 @@ int atlas_level(const TreeSet& set) {
 image::Picture atlas(const TreeSet& set, int level) {
   const Grid grid = grid_of(set);
   const int side = 1 << level;
-  const std::vector<TreeIndex> trees = all_trees(set);
+  const std::vector<wavelet::MapPlace> trees = all_trees(set);
   image::Picture picture(grid.columns * side, grid.rows * side);
   parallel_for(trees.size(), [&](std::size_t i) {
     const wavelet::Map map = set.tree(trees[i].column, trees[i].row).reconstruct(level);
@@ -62,18 +62,6 @@ image::Picture atlas(const TreeSet& set, int level) {
                   picture.rgb.data() + picture.offset(left, top + y));
   });
   return picture;
-}
-
-void expose(image::Picture& picture) {
-  double sum = 0;
-  for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
-    sum += std::max(0.0,
-                    static_cast<double>(luminance(Eigen::Map<const Rgb>(picture.rgb.data() + i))));
-  if (sum <= 0)
-    return;
-  const auto gain = static_cast<float>(0.06 * static_cast<double>(picture.rgb.size()) / sum);
-  for (float& value : picture.rgb)
-    value *= gain;
 }
 
 } // namespace haarlight::tool

@@ -37,8 +37,6 @@ std::vector<double> channels_of(const Rgb& c) {
   return {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])};
 }
 
-double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
-
 TreeFigures sum_of(const std::vector<TreeFigures>& figures, int levels) {
   TreeFigures sum;
   sum.levels.resize(static_cast<std::size_t>(levels));

@@ -1,5 +1,6 @@
 #include <support/map_output.h>
 
+#include <support/map_report.h>
 #include <support/progress.h>
 #include <support/words.h>
 
@@ -7,7 +8,6 @@
 
 #include <wavelet/output_file.h>
 
-#include <array>
 #include <cmath>
 
 namespace haarlight::tool {
@@ -16,75 +16,6 @@ namespace {
 using wavelet::CompressOptions;
 using wavelet::CompressReport;
 using wavelet::Conservation;
-using wavelet::Criterion;
-
-constexpr std::array<const char*, 6> threshold_option_names = {
-    "--criterion", "--tolerance", "--keep", "--coefficients", "--luminance", "--quantize"};
-
-template <class Names>
-void refuse(const Tool& tool, const Names& names, const char* why) {
-  for (const char* name : names)
-    if (tool.given(name))
-      throw UsageError(name + std::string(why));
-}
-
-/// The options as given, checked against each other.
-CompressOptions checked_options(const MapOutput& output, const wavelet::SetInfo& info) {
-  CompressOptions options = output.compression;
-  const bool count = options.threshold.criterion == Criterion::Count;
-  if (count && !output.keep)
-    throw UsageError("--criterion count needs --keep");
-  if (output.tolerance && output.keep)
-    throw UsageError("--tolerance and --keep exclude each other");
-  options.threshold.tolerance =
-      output.tolerance.value_or(wavelet::default_tolerance(info, options.threshold.criterion));
-  if (output.keep)
-    options.threshold.keep = static_cast<std::size_t>(*output.keep);
-  return options;
-}
-
-void refuse_compress_options(const Tool& tool) {
-  refuse(tool, threshold_option_names, " is for .haar files, the output is an .exr");
-  refuse(tool, std::array{"--pack"}, " is for .haar files, the output is an .exr");
-}
-
-void describe_set(const wavelet::SetInfo& info, Report& report) {
-  report.add("map_size", info.size, "px")
-      .add("columns", info.columns)
-      .add("rows", info.rows)
-      .add("maps", info.map_count());
-}
-
-void describe(const Conservation& conservation, double tolerance, Report& report) {
-  report.section("conservation")
-      .add("mean_error", conservation.mean_error)
-      .add("worst_error", conservation.largest_error)
-      .add("worst_column", conservation.worst_column)
-      .add("worst_row", conservation.worst_row)
-      .add("tolerance", tolerance);
-}
-
-double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
-
-void describe(const CompressReport& result, const CompressOptions& options, Report& report) {
-  const auto total = static_cast<double>(result.total_coefficients);
-  const auto kept = static_cast<double>(result.kept_coefficients);
-  Report& part = report.section("compression");
-  part.add("criterion", wavelet::criterion_name(options.threshold.criterion));
-  if (options.threshold.keep)
-    part.add("keep", *options.threshold.keep);
-  else
-    part.add("tolerance", options.threshold.tolerance);
-  if (options.quantize)
-    part.add("quantize", true);
-  part.add("coefficients", result.total_coefficients)
-      .add("kept_coefficients", result.kept_coefficients)
-      .add("kept_share", share(kept, total))
-      .add("nodes", result.nodes)
-      .add("relative_l2_error", result.relative_l2_error())
-      .add("relative_linf_error", result.relative_linf_error())
-      .add("negative_mass_share", share(result.negative_mass, result.mass));
-}
 
 /// Does what both kinds of output have in common once all is written but not yet in place.
 int finish(const Tool& tool, const MapOutput& output, std::optional<Conservation> conservation,
@@ -122,7 +53,7 @@ int write_exr_set(const Tool& tool, const wavelet::MapSource& source, const MapO
 
 int write_haar_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
                    Report& report) {
-  const CompressOptions options = checked_options(output, source.info());
+  const CompressOptions options = compress_options(output, source.info());
   OutputFile file(output.path);
   CompressReport result;
   {
@@ -135,37 +66,6 @@ int write_haar_set(const Tool& tool, const wavelet::MapSource& source, const Map
 }
 
 } // namespace
-
-void add_compress_options(Tool& tool, MapOutput& output) {
-  CompressOptions& options = output.compression;
-  tool.choice(options.threshold.criterion, "--criterion",
-              {{"variance", Criterion::Variance},
-               {"l2", Criterion::L2},
-               {"linf", Criterion::Linf},
-               {"count", Criterion::Count}},
-              "What ranks the coefficients: their share in a sampler's variance, the L2 error, the "
-              "largest error, or as many as --keep says");
-  tool.value(output.tolerance, "--tolerance",
-             "Bound of the criterion, relative; 0 keeps everything [variance 0.0005, for a light's "
-             "world-frame map 0.0001; l2 0.01; linf 0.002]",
-             0, 1e9);
-  tool.value(output.keep, "--keep", "Coefficients to keep per map, in place of --tolerance", 0,
-             1 << 30);
-  tool.choice(
-      options.coefficients, "--coefficients",
-      {{"half", wavelet::CoefficientType::Half}, {"float", wavelet::CoefficientType::Float}},
-      "Precision of stored coefficients: 16 or 32 bits");
-  tool.flag(options.luminance, "--luminance", "Store the luminance in place of RGB");
-  tool.flag(options.quantize, "--quantize",
-            "Round what is kept as coarsely as the tolerance allows; with l2 the bound holds for "
-            "both. Makes --pack's files much smaller");
-  tool.flag(options.packed, "--pack",
-            "Write the packed form, for transport: maps2haar --unpack gives the mapped form back");
-}
-
-void refuse_threshold_options(const Tool& tool) {
-  refuse(tool, threshold_option_names, " is for maps, the input is a .haar file");
-}
 
 void add_map_output(Tool& tool, MapOutput& output) {
   tool.output(output.path, "OUT.exr|OUT.haar",

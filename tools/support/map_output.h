@@ -24,7 +24,13 @@ struct MapOutput {
 /// Declares --criterion, --tolerance, --keep, --coefficients, --luminance, --quantize and --pack.
 void add_compress_options(Tool& tool, MapOutput& output);
 
-/// @throws UsageError if any of these but --pack was given, which changes no tree
+/// The compression options as given. @throws UsageError for ones that contradict each other
+wavelet::CompressOptions compress_options(const MapOutput& output, const wavelet::SetInfo& info);
+
+/// @throws UsageError if one of the compression options was given
+void refuse_compress_options(const Tool& tool);
+
+/// @throws UsageError if one of them was given that changes trees: any but --pack
 void refuse_threshold_options(const Tool& tool);
 
 /// Declares -o, the compression options, --conservation-tolerance and --json.

@@ -9,6 +9,9 @@
 
 namespace haarlight::tool {
 
+/// part / whole, 0 of nothing.
+inline double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
 /// An ordered list of entries. Names are JSON keys in snake_case; the text form shows them with
 /// spaces. Numbers that are not finite become null in JSON.
 class Report {

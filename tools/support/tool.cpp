@@ -1,18 +1,10 @@
 #include <support/tool.h>
 
-#include <support/words.h>
-
-#include <wavelet/error.h>
-#include <wavelet/parallel.h>
 #include <wavelet/provenance.h>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
-#include <cstdio>
-#include <cstring>
 
 namespace haarlight::tool {
 
@@ -21,18 +13,6 @@ struct Tool::Parser {
 };
 
 namespace {
-
-/// Diagnostics are one line, whatever characters a file name has.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  return text;
-}
-
-void say(const std::string& line) {
-  const std::string text = line + '\n';
-  std::fwrite(text.data(), 1, text.size(), stderr);
-}
 
 std::string version_line(const std::string& name) {
   std::string version = version_text(); // "haarlight 0.1.0"
@@ -135,59 +115,6 @@ std::optional<int> Tool::parse(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return complain(exit_usage, std::string(error.what()) + " (see " + m_name + " --help)");
   }
-}
-
-int Tool::run(int argc, const char* const* argv, const std::function<int()>& body) {
-  std::signal(SIGPIPE, SIG_IGN); // a closed pipe is an output error like any other
-  std::signal(SIGXFSZ, SIG_IGN); // and so is a file size limit
-  if (const auto code = parse(argc, argv))
-    return *code;
-  const ThreadLimit limit(m_threads);
-  const int code = guarded(body);
-  if (code < exit_usage && !m_quiet)
-    std::for_each(m_notes.begin(), m_notes.end(), say);
-  return code;
-}
-
-int Tool::guarded(const std::function<int()>& body) const {
-  try {
-    return body();
-  } catch (const UsageError& error) {
-    return complain(exit_usage, std::string(error.what()) + " (see " + m_name + " --help)");
-  } catch (const Error& error) {
-    return complain(error.kind() == ErrorKind::Input ? exit_input : exit_output, error.what());
-  } catch (const std::bad_alloc&) {
-    return complain(exit_internal, "out of memory");
-  } catch (const std::exception& error) {
-    return complain(exit_internal, error.what());
-  }
-}
-
-int Tool::complain(int code, const std::string& message) const {
-  say(m_name + ": " + one_line(message));
-  return code;
-}
-
-void Tool::note(const std::string& line) const {
-  const std::string text = m_name + ": " + one_line(line);
-  if (m_verbose && !m_quiet)
-    say(text);
-  else
-    m_notes.push_back(text);
-}
-
-void Tool::detail(const std::string& line) const {
-  if (m_verbose)
-    note(line);
-}
-
-void Tool::print(const Report& report) const { print(m_json ? report.json() : report.text()); }
-
-void Tool::print(const std::string& text) const {
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!written || std::fflush(stdout) != 0)
-    throw_output_error("standard output",
-                       std::string("cannot be written: ") + std::strerror(errno));
 }
 
 } // namespace haarlight::tool

@@ -66,6 +66,11 @@ bool has_extension(const std::string& path, const std::string& extension) {
   return path.size() > extension.size() && path.ends_with(extension);
 }
 
+void check_picture_path(const std::string& path, const std::string& option) {
+  if (!path.empty() && !has_extension(path, ".png") && !has_extension(path, ".exr"))
+    throw UsageError(option + ": '" + path + "' ends in neither .png nor .exr");
+}
+
 std::string short_text(double number) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.6g", number);

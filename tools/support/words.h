@@ -16,6 +16,10 @@ std::vector<double> numbers_of(const std::string& word, std::size_t count, doubl
 /// True if there is a name and it ends so, as in ".haar".
 bool has_extension(const std::string& path, const std::string& extension);
 
+/// Nothing for an empty path. @param option for the error
+/// @throws UsageError if `path` ends in neither .png nor .exr
+void check_picture_path(const std::string& path, const std::string& option);
+
 /// Six significant digits, as in 0.00123 or 1.5e-07.
 std::string short_text(double number);
 /// Enough digits to read the same number back.

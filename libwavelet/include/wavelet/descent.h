@@ -7,6 +7,7 @@
 #include <wavelet/tree.h>
 
 #include <algorithm>
+#include <span>
 
 namespace haarlight::wavelet {
 
@@ -73,12 +74,12 @@ inline Vec2 end_point(const Descent& d) { return {d.x + d.u1 * d.side, d.y + d.u
 struct TreeDensity {
   const TreeView* tree = nullptr;
   std::uint32_t node = no_node; ///< of the square, or no_node: uniform in it
-  Float4 mean = {};             ///< average over the square, lanes R, G, B, 0
+  float mean = 0;               ///< weighted average over the square
   Float4 weights = luminance_lanes;
 
-  /// Density over a whole tree.
-  static TreeDensity of(const TreeView& view, Float4 colour_weights = luminance_lanes) {
-    return {&view, view.root(), to_lanes(view.mean), colour_weights};
+  /// Density over a whole tree, which must outlive it.
+  static TreeDensity of(const TreeView& tree, Float4 weights = luminance_lanes) {
+    return {&tree, tree.root(), lane_sum(to_lanes(tree.mean) * weights), weights};
   }
 };
 
@@ -88,43 +89,52 @@ namespace detail {
 /// negative, and what they lost must stay reachable.
 inline constexpr float quadrant_floor = 1.0F / 256;
 
-/// Clamped weights of the four quadrants.
-inline Float4 quadrant_weights(const std::array<Float4, 4>& children, Float4 weights) {
-  Float4 w = {lane_sum(children[0] * weights), lane_sum(children[1] * weights),
-              lane_sum(children[2] * weights), lane_sum(children[3] * weights)};
-  w = larger(w, Float4{});
-  const float floor = quadrant_floor * lane_sum(w) + 1e-30F;
-  return larger(w, Float4{floor, floor, floor, floor});
+/// Weighted averages over the four quadrants of a node's square.
+inline Float4 quadrant_means(const Details& details, const TreeDensity& density) {
+  const Float4 d = lane_sums(details.d1 * density.weights, details.d2 * density.weights,
+                             details.d3 * density.weights);
+  const Float4 left = {d[0], -d[0], d[0], -d[0]};
+  const Float4 skew = {d[1] + d[2], d[1] - d[2], -d[1] - d[2], d[2] - d[1]};
+  return (left + density.mean) + skew;
 }
 
-template <class Step>
-void walk_density(TreeDensity density, Step step) {
-  while (density.node != no_node) {
-    const auto children = density.tree->details(density.node).children(density.mean);
-    const unsigned q = step(quadrant_weights(children, density.weights));
-    density.mean = children[q];
-    density.node = density.tree->child(density.node, q);
-  }
+/// Clamped weights of the four quadrants.
+inline Float4 quadrant_weights(Float4 means) {
+  const Float4 positive = larger(means, Float4{});
+  return larger(positive, Float4{} + (quadrant_floor * lane_sum(positive) + 1e-30F));
+}
+
+/// One step from a node to the quadrant that `choose` picks by the quadrants' weights.
+template <class Choose>
+void step_down(TreeDensity& density, Descent& d, Choose choose) {
+  const Float4 means = quadrant_means(density.tree->details(density.node), density);
+  const Float4 w = quadrant_weights(means);
+  const unsigned q = choose(w);
+  d.pdf *= quadrant_density(w, q);
+  density.mean = means[q];
+  density.node = density.tree->child(density.node, q);
 }
 
 } // namespace detail
 
 /// Leads a descent from a square to the end of its tree; d.pdf becomes the pdf per unit square.
-inline void descend_tree(Descent& d, const TreeDensity& density) {
-  detail::walk_density(density, [&](Float4 w) {
-    const unsigned q = steer(d, w);
-    d.pdf *= quadrant_density(w, q);
-    return q;
-  });
+inline void descend_tree(TreeDensity density, Descent& d) {
+  while (density.node != no_node)
+    detail::step_down(density, d, [&](Float4 w) { return steer(d, w); });
 }
 
 /// The pdf of descend_tree() at (u, v), which must lie in the descent's square, into d.pdf.
-inline void follow_tree(Descent& d, const TreeDensity& density, float u, float v) {
-  detail::walk_density(density, [&](Float4 w) {
-    const unsigned q = steer_to(d, u, v);
-    d.pdf *= quadrant_density(w, q);
-    return q;
-  });
+inline void follow_tree(TreeDensity density, float u, float v, Descent& d) {
+  while (density.node != no_node)
+    detail::step_down(density, d, [&](Float4 /*w*/) { return steer_to(d, u, v); });
 }
+
+/// descend_tree() for many at once: their steps alternate, so that none waits for memory alone.
+/// @param densities as many as descents; used up
+void descend_tree(std::span<TreeDensity> densities, std::span<Descent> descents);
+
+/// follow_tree() for many at once. @param points as many as the others
+void follow_tree(std::span<TreeDensity> densities, std::span<const Vec2> points,
+                 std::span<Descent> descents);
 
 } // namespace haarlight::wavelet

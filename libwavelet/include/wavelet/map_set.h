@@ -35,6 +35,9 @@ struct Map {
 /// Average of a map's pixels, summed in double.
 Eigen::Array3d map_mean(const Map& map);
 
+/// A map's averages over squares of two by two pixels. @param map of two pixels a side or more
+Map halved(const Map& map);
+
 enum class SetKind : std::uint32_t {
   Generic = 0, ///< any functions on the square
   Brdf = 1,    ///< f_r(ω_o, ω)·max(0, n·ω) (or f_r alone) in the reflection frame, sr⁻¹
@@ -63,6 +66,12 @@ struct SetInfo {
   Provenance provenance;
 
   int map_count() const { return columns * rows; }
+};
+
+/// The indices of a map in its set.
+struct MapPlace {
+  int column = 0;
+  int row = 0;
 };
 
 /// Makes the maps of a set one by one. Implementations are safe to call from several threads.

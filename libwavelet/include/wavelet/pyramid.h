@@ -39,17 +39,25 @@ public:
   /// @param level 0 … levels(); @param u,v in [0, 1]
   Float4 lookup(int entry, int level, float u, float v) const;
 
-  /// Where four points lie in the grids of a level, for look-ups of them in several entries.
+  /// Many points, each at a level of its own, and where they lie in the grids.
   struct Places {
-    int level;
-    Float4 u, v;
-    Int4 page, texel;
-    Float4 fx, fy;
+    static constexpr int capacity = 64;
+    float u[capacity], v[capacity]; ///< in [0, 1]
+    float scale[capacity];          ///< squares a side, set with the next two by set_level()
+    float last_tile[capacity];
+    float first_page[capacity];
+    std::int32_t page[capacity], texel[capacity]; ///< set with the next by place()
+    float fx[capacity], fy[capacity];
   };
-  Places places(int level, Float4 u, Float4 v) const;
 
-  /// lookup() of one of four places.
-  Float4 lookup(int entry, const Places& places, int lane) const;
+  /// @param level 0 …; beyond levels() it counts as levels()
+  void set_level(Places& places, std::size_t i, int level) const;
+
+  /// Finds the first `count` places, of which levels and u, v are set.
+  static void place(Places& places, int count);
+
+  /// lookup() at a place in two entries: (1 − blend) · first + blend · second.
+  Float4 lookup(int entry0, int entry1, float blend, const Places& places, std::size_t i) const;
 
 private:
   static constexpr int tile_bits = 3;
@@ -58,7 +66,13 @@ private:
   static constexpr std::size_t tile_values = 4ULL * stored_side * stored_side;
   static constexpr std::uint32_t absent = 0x80000000U; ///< low bits: the finest level that exists
 
-  Float4 interpolate(std::uint32_t page, int texel, float fx, float fy) const;
+  const std::uint32_t* pages(int entry) const {
+    return m_pages.data() + static_cast<std::size_t>(entry) * m_pages_per_entry;
+  }
+  const std::uint16_t* texels(std::uint32_t page, std::int32_t texel) const {
+    return m_texels.data() + page * tile_values + texel;
+  }
+  Float4 lookup_coarser(const std::uint32_t* pages, const Places& places, std::size_t i) const;
 
   static int tiles_log(int level) { return std::max(level - tile_bits, 0); }
 
@@ -67,7 +81,16 @@ private:
 
   int m_entries;
   int m_levels;
-  std::vector<std::uint32_t> m_level_offset; ///< first page of each level
+  /// The tiles of a level: squares a side, last tile of a row, first page.
+  struct Grid {
+    float scale, last_tile, first_page;
+  };
+
+  std::size_t first_page(int level) const {
+    return static_cast<std::size_t>(m_grids[static_cast<std::size_t>(level)].first_page);
+  }
+
+  std::vector<Grid> m_grids; ///< by level
   std::size_t m_pages_per_entry = 0;
   std::vector<std::uint32_t> m_pages;  ///< tile index, or absent | level
   std::vector<std::uint16_t> m_texels; ///< upper halves of floats, R, G, B, deviation
@@ -75,59 +98,73 @@ private:
 
 namespace detail {
 
-using Short8 = std::uint16_t __attribute__((vector_size(16)));
+/// Two neighbouring texels of four channels.
+using Texels = float __attribute__((vector_size(32)));
 
-/// Two neighbouring texels, 16 bytes, blended: (1 − f)·first + f·second.
-inline Float4 blend_texels(const std::uint16_t* texels, float f) {
+inline void load_texels(const std::uint16_t* from, Texels& texels) {
+  using Short8 = std::uint16_t __attribute__((vector_size(16)));
+  using Word8 = std::uint32_t __attribute__((vector_size(32)));
   Short8 raw;
-  std::memcpy(&raw, texels, sizeof raw);
-  const Short8 zero = {};
-  const auto first =
-      std::bit_cast<Float4>(__builtin_shufflevector(zero, raw, 0, 8, 1, 9, 2, 10, 3, 11));
-  const auto second =
-      std::bit_cast<Float4>(__builtin_shufflevector(zero, raw, 4, 12, 5, 13, 6, 14, 7, 15));
+  std::memcpy(&raw, from, sizeof raw);
+  const Word8 wide = __builtin_convertvector(raw, Word8) << 16U;
+  std::memcpy(&texels, &wide, sizeof texels);
+}
+
+/// (1 − f)·first + f·second.
+inline Float4 blend_texels(const Texels& texels, float f) {
+  const Float4 first = __builtin_shufflevector(texels, texels, 0, 1, 2, 3);
+  const Float4 second = __builtin_shufflevector(texels, texels, 4, 5, 6, 7);
   return first + (second - first) * f;
 }
 
 } // namespace detail
 
-inline Pyramid::Places Pyramid::places(int level, Float4 u, Float4 v) const {
-  const float scale = power_of_two(level);
-  const Float4 x = u * scale + 0.5F;
-  const Float4 y = v * scale + 0.5F;
-  const Int4 ix = __builtin_convertvector(x, Int4);
-  const Int4 iy = __builtin_convertvector(y, Int4);
-  const int log = tiles_log(level);
-  const Int4 last = Int4{} + ((1 << log) - 1);
-  const Int4 tile_x = ix >> tile_bits;
-  const Int4 tile_y = iy >> tile_bits;
-  const Int4 tx = tile_x < last ? tile_x : last;
-  const Int4 ty = tile_y < last ? tile_y : last;
-  Places result;
-  result.level = level;
-  result.u = u;
-  result.v = v;
-  result.page =
-      (ty << log) + tx + static_cast<int>(m_level_offset[static_cast<std::size_t>(level)]);
-  result.texel = 4 * (stored_side * (iy - (ty << tile_bits)) + ix - (tx << tile_bits));
-  result.fx = x - __builtin_convertvector(ix, Float4);
-  result.fy = y - __builtin_convertvector(iy, Float4);
-  return result;
+inline void Pyramid::set_level(Places& p, std::size_t i, int level) const {
+  const Grid& grid = m_grids[static_cast<std::size_t>(std::min(level, m_levels))];
+  p.scale[i] = grid.scale;
+  p.last_tile[i] = grid.last_tile;
+  p.first_page[i] = grid.first_page;
 }
 
-inline Float4 Pyramid::interpolate(std::uint32_t page, int texel, float fx, float fy) const {
-  const std::uint16_t* p = m_texels.data() + page * tile_values + texel;
-  const Float4 upper = detail::blend_texels(p, fx);
-  const Float4 lower = detail::blend_texels(p + 4 * stored_side, fx);
-  return upper + (lower - upper) * fy;
+/// All in floats, which are exact here: not every CPU has vectors of integer products.
+inline void Pyramid::place(Places& p, int count) {
+  constexpr float side = tile_side;
+  for (int i = 0; i < count; ++i) {
+    const float x = p.u[i] * p.scale[i] + 0.5F;
+    const float y = p.v[i] * p.scale[i] + 0.5F;
+    const auto ix = static_cast<float>(static_cast<std::int32_t>(x));
+    const auto iy = static_cast<float>(static_cast<std::int32_t>(y));
+    const float last = p.last_tile[i];
+    const float tx = smaller(static_cast<float>(static_cast<std::int32_t>(ix / side)), last);
+    const float ty = smaller(static_cast<float>(static_cast<std::int32_t>(iy / side)), last);
+    p.page[i] = static_cast<std::int32_t>(ty * (last + 1) + tx + p.first_page[i]);
+    p.texel[i] = static_cast<std::int32_t>(4 * (stored_side * (iy - ty * side) + (ix - tx * side)));
+    p.fx[i] = x - ix;
+    p.fy[i] = y - iy;
+  }
 }
 
-inline Float4 Pyramid::lookup(int entry, const Places& p, int lane) const {
-  const std::uint32_t page = m_pages[static_cast<std::size_t>(entry) * m_pages_per_entry +
-                                     static_cast<std::size_t>(p.page[lane])];
-  if ((page & absent) != 0)
-    return lookup(entry, static_cast<int>(page & 15U), p.u[lane], p.v[lane]);
-  return interpolate(page, p.texel[lane], p.fx[lane], p.fy[lane]);
+inline Float4 Pyramid::lookup(int entry0, int entry1, float blend, const Places& p,
+                              std::size_t i) const {
+  const std::uint32_t page0 = pages(entry0)[p.page[i]];
+  const std::uint32_t page1 = pages(entry1)[p.page[i]];
+  if (((page0 | page1) & absent) != 0) {
+    const Float4 near = lookup_coarser(pages(entry0), p, i);
+    return near + (lookup_coarser(pages(entry1), p, i) - near) * blend;
+  }
+  const std::uint16_t* near = texels(page0, p.texel[i]);
+  const std::uint16_t* far = texels(page1, p.texel[i]);
+  detail::Texels upper;
+  detail::Texels lower;
+  detail::Texels far_upper;
+  detail::Texels far_lower;
+  detail::load_texels(near, upper);
+  detail::load_texels(near + 4 * stored_side, lower);
+  detail::load_texels(far, far_upper);
+  detail::load_texels(far + 4 * stored_side, far_lower);
+  upper += (far_upper - upper) * blend;
+  lower += (far_lower - lower) * blend;
+  return detail::blend_texels(upper + (lower - upper) * p.fy[i], p.fx[i]);
 }
 
 } // namespace haarlight::wavelet

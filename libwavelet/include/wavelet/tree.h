@@ -93,6 +93,10 @@ struct TreeView {
 
   /// The function as a map of 2^level pixels a side.
   Map reconstruct(int level) const;
+
+private:
+  /// details() of the rarer kinds of coefficients, which start at p.
+  Details converted_details(const std::byte* p) const;
 };
 
 inline Details TreeView::details(std::uint32_t node) const {
@@ -102,22 +106,7 @@ inline Details TreeView::details(std::uint32_t node) const {
   if (channels == 3 && type == CoefficientType::Half)
     return {halves_to_floats(p) * rgb_scale, halves_to_floats(p + 6) * rgb_scale,
             halves_to_floats(p + 12) * rgb_scale};
-  Details result;
-  Float4* const d[3] = {&result.d1, &result.d2, &result.d3};
-  for (int m = 0; m < 3; ++m)
-    for (int c = 0; c < 4; ++c) {
-      const int source = m * channels + (channels == 3 && c < 3 ? c : 0);
-      float value = 0;
-      if (type == CoefficientType::Float) {
-        std::memcpy(&value, p + 4 * source, 4);
-      } else {
-        std::uint16_t half = 0;
-        std::memcpy(&half, p + 2 * source, 2);
-        value = half_to_float(half);
-      }
-      (*d[m])[c] = value * rgb_scale[c];
-    }
-  return result;
+  return converted_details(p);
 }
 
 /// A tree that owns its arrays; coefficients are padded by at least 8 bytes so that lanes may be

@@ -81,6 +81,10 @@ private:
   mutable std::vector<Flag> m_checked;
 };
 
+/// True if the first bytes are those of a .haar file of either form, which may be damaged all the
+/// same.
+bool begins_as_tree_set(const InputFile& file);
+
 /// Takes the trees of a set one after the other, column fastest, then finish().
 class TreeSink {
 public:

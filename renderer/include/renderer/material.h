@@ -6,7 +6,7 @@
 #include <renderer/tree_table.h>
 
 #include <brdf/measured_brdf.h>
-#include <wavelet/product.h>
+#include <wavelet/adaptive_product.h>
 
 #include <memory>
 #include <optional>

@@ -1,0 +1,85 @@
+#pragma once
+// Products of a light tree and a reflectance seen through a rotation, built on the fly.
+
+#include <wavelet/product_tree.h>
+#include <wavelet/pyramid.h>
+
+#include <span>
+#include <vector>
+
+namespace haarlight::wavelet {
+
+/// A reflectance set's entry pair seen from a light's frame: what the product at one shading point
+/// needs.
+struct RotatedReflectance {
+  const Pyramid* pyramid = nullptr;
+  int entry0 = 0; ///< two neighbouring entries (θ_r) …
+  int entry1 = 0;
+  float blend = 0;            ///< … and the weight of the second
+  ReflectionFrame reflection; ///< the pyramid's local frame, in the light's axes
+};
+
+struct AdaptiveOptions {
+  /// Refine until the relative variance that is left, by estimate, is below this.
+  float variance_bound = 0.03F;
+  int max_leaves = 4096;
+};
+
+namespace detail {
+
+/// A square about to be replaced by its four quadrants.
+struct Family {
+  Float4 light; ///< average, lanes R, G, B, 0
+  std::uint32_t node;
+  std::int32_t product_node;
+  std::int32_t level;
+  std::uint16_t x, y;
+};
+
+struct Quadrants;
+
+} // namespace detail
+
+/// Builds products adaptively from the root of the light tree: the reflectance's average over a
+/// square is looked up in its own frame at the same level (the domain map is equal-area, so levels
+/// match), and squares are split where weight times the reflectance's relative variance is large.
+/// Clarberg and Akenine-Möller 2008 ("Practical product importance sampling for direct
+/// illumination") do this with point evaluations; averages overlook no lobe. Reused from point to
+/// point, it allocates nothing.
+class AdaptiveProduct {
+public:
+  /// @param light a tree in the frame that reflections are given in; its arrays must outlive this
+  explicit AdaptiveProduct(const TreeView& light);
+
+  /// The product at one shading point; valid until the next call.
+  const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
+
+private:
+  using Family = detail::Family;
+
+  void start();
+  void refine(const AdaptiveOptions& options);
+  void split_above(float threshold);
+  void expand_all(float threshold);
+  void add(const Family& family, const detail::Quadrants& quadrants, float threshold);
+  float threshold(double excess) const;
+  void split(const ProductLeaf& square, Family& family);
+  std::uint32_t new_leaf();
+  std::int32_t new_node(std::int32_t slot);
+
+  TreeView m_light;
+  std::vector<Family> m_start; ///< the same for every product
+  RotatedReflectance m_reflectance;
+  std::size_t m_limit = 0;
+  std::vector<Family> m_families;    ///< being replaced
+  std::vector<Family> m_next;        ///< to be replaced after them
+  std::vector<float> m_errors;       ///< what each leaf leaves of the variance, by estimate
+  std::vector<std::uint32_t> m_free; ///< leaves no longer in use
+  std::vector<std::int32_t> m_parent_slots;
+  ProductLeaf m_split; ///< on its way from quadrant to family
+  double m_weight = 0;
+  double m_error = 0;
+  ProductTree m_product;
+};
+
+} // namespace haarlight::wavelet

@@ -1,0 +1,117 @@
+#pragma once
+// A product of functions as something to sample: a quadtree whose leaves are squares on which all
+// factors but one count as constant, so that below them the product has the detail of that one's
+// tree: mostly the light's.
+//
+// The density follows the luminance of the product, not the product of luminances: a leaf weighs
+// the colours of what is left by luminance weight times the constants.
+
+#include <wavelet/descent.h>
+#include <wavelet/tree.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace haarlight::wavelet {
+
+/// Four quadrants q = qx + 2 qy: the product's average weight over each, and what lies there: a
+/// node, or the leaf ~child.
+struct ProductNode {
+  Float4 weights = {};
+  std::int32_t child[4] = {-1, -1, -1, -1};
+};
+
+/// A square on which all factors but one count as constant. Columns and rows count squares of the
+/// leaf's level.
+struct ProductLeaf {
+  Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, 0
+  Float4 reflectance = {};      ///< product of the others' averages, lanes R, G, B
+  std::uint32_t node = no_node; ///< in the tree of the factor that is left
+  std::uint32_t rest = 0;       ///< which factor is left
+  std::int32_t slot = -1;       ///< 4 × its parent's product node + quadrant
+  std::int32_t level = 0;
+  std::uint16_t x = 0, y = 0;
+};
+
+/// A product ready for sampling. Points are those of the light's square; measures per unit square.
+class ProductTree {
+public:
+  /// ∫ L·B over the square, per channel; times 4π for solid angle.
+  Rgb integral() const;
+
+  /// Nothing to sample: the product vanishes.
+  bool empty() const { return m_nodes.empty() || !(mean() > 0); }
+
+  std::size_t leaf_count() const { return m_leaf_count; }
+
+  /// Nodes, parents before children; the first is the whole square.
+  std::span<const ProductNode> nodes() const { return m_nodes; }
+
+  /// Leaves in no particular order; those that no node names are not in use and hold no light.
+  std::span<const ProductLeaf> leaves() const { return m_leaves; }
+
+  /// The tree that a leaf's node is of.
+  const TreeView& rest(std::uint32_t index) const { return m_rests[index].tree; }
+
+  std::size_t bytes() const {
+    return m_nodes.size() * sizeof(ProductNode) + m_leaves.size() * sizeof(ProductLeaf);
+  }
+
+  /// Draws a point of the square; result.pdf is its density per unit square.
+  /// @param u1,u2 in [0, 1); must not be empty()
+  Descent sample(float u1, float u2) const;
+
+  /// sample() for many points at once, which hides what each waits for.
+  /// @param points in [0, 1)², as many as out
+  void sample(std::span<const Vec2> points, std::span<Descent> out) const;
+
+  /// The density of sample() at a point, per unit square.
+  float pdf(float u, float v) const;
+
+private:
+  friend class AdaptiveProduct;
+  friend class SynchronousProduct;
+
+  /// A factor that may be left in leaves.
+  struct Rest {
+    TreeView tree;
+    Float4 floor = {}; ///< of the product of the others, in the density; lanes R, G, B, 0
+  };
+
+  /// Turns node weights, given at leaves, into averages all the way up.
+  void sum_upwards(const std::vector<std::int32_t>& parent_slots);
+
+  std::int32_t descend_nodes(Descent& d) const;
+
+  std::int32_t& child(std::int32_t slot) {
+    return m_nodes[static_cast<std::uint32_t>(slot) / 4].child[slot & 3];
+  }
+
+  void set_density(std::int32_t slot, float density) {
+    m_nodes[static_cast<std::uint32_t>(slot) / 4].weights[slot & 3] = density;
+  }
+
+  /// A leaf's share in the total.
+  float weight(const ProductLeaf& leaf) const {
+    return m_nodes[static_cast<std::uint32_t>(leaf.slot) / 4].weights[leaf.slot & 3] *
+           power_of_two(-2 * leaf.level);
+  }
+
+  /// Average weight over the whole square.
+  float mean() const { return 0.25F * lane_sum(m_nodes[0].weights); }
+
+  TreeDensity density(std::int32_t leaf) const {
+    const ProductLeaf& l = m_leaves[static_cast<std::size_t>(leaf)];
+    const Rest& rest = m_rests[l.rest];
+    const Float4 weights = larger(l.reflectance, rest.floor) * luminance_lanes;
+    return {&rest.tree, l.node, lane_sum(l.light * weights), weights};
+  }
+
+  std::vector<Rest> m_rests;
+  std::vector<ProductNode> m_nodes;
+  std::vector<ProductLeaf> m_leaves;
+  std::size_t m_leaf_count = 0;
+};
+
+} // namespace haarlight::wavelet

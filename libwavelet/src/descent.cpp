@@ -1,0 +1,53 @@
+#include <wavelet/descent.h>
+
+#include <array>
+
+namespace haarlight::wavelet {
+namespace {
+
+/// So many descents alternate.
+constexpr std::size_t width = 32;
+
+/// Takes a step with every one of `count` densities that is not at its tree's end, again and again
+/// until all are. @param choose (i, weights) → quadrant
+template <class Choose>
+void walk_all(TreeDensity* densities, Descent* descents, std::size_t count, Choose choose) {
+  std::array<std::uint8_t, width> active;
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    active[left] = static_cast<std::uint8_t>(i);
+    left += densities[i].node != no_node ? 1 : 0;
+  }
+  while (left > 0) {
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < left; ++k) {
+      const std::size_t i = active[k];
+      detail::step_down(densities[i], descents[i], [&](Float4 w) { return choose(i, w); });
+      active[next] = static_cast<std::uint8_t>(i);
+      next += densities[i].node != no_node ? 1 : 0;
+    }
+    left = next;
+  }
+}
+
+} // namespace
+
+void descend_tree(std::span<TreeDensity> densities, std::span<Descent> descents) {
+  for (std::size_t begin = 0; begin < descents.size(); begin += width) {
+    Descent* d = descents.data() + begin;
+    walk_all(densities.data() + begin, d, std::min(width, descents.size() - begin),
+             [&](std::size_t i, Float4 w) { return steer(d[i], w); });
+  }
+}
+
+void follow_tree(std::span<TreeDensity> densities, std::span<const Vec2> points,
+                 std::span<Descent> descents) {
+  for (std::size_t begin = 0; begin < descents.size(); begin += width) {
+    Descent* d = descents.data() + begin;
+    const Vec2* p = points.data() + begin;
+    walk_all(densities.data() + begin, d, std::min(width, descents.size() - begin),
+             [&](std::size_t i, Float4 /*w*/) { return steer_to(d[i], p[i].x(), p[i].y()); });
+  }
+}
+
+} // namespace haarlight::wavelet

@@ -1,0 +1,72 @@
+#include <wavelet/factor.h>
+
+#include <wavelet/sphere_map.h>
+
+#include <algorithm>
+
+namespace haarlight::wavelet {
+
+TreeFactor::TreeFactor(const TreeView& view, const SquareSymmetry& symmetry)
+    : m_view(view), m_plain(symmetry.turns == 0 && !symmetry.mirrored) {
+  for (unsigned q = 0; q < 4; ++q)
+    m_stored[q] = symmetry.to_stored(q);
+}
+
+void TreeFactor::split(const FactorSquares& squares, const FactorQuadrants& out) const {
+  for (std::size_t i = 0; i < squares.count; ++i) {
+    Float4* mean = out.mean + 4 * i;
+    std::uint32_t* detail = out.detail + 4 * i;
+    const std::uint32_t node = squares.detail[i];
+    if (node == no_node) {
+      std::fill_n(mean, 4, squares.mean[i]);
+      std::fill_n(detail, 4, no_node);
+      continue;
+    }
+    const auto stored = m_view.details(node).children(squares.mean[i]);
+    for (unsigned q = 0; q < 4; ++q) {
+      mean[q] = stored[m_stored[q]];
+      detail[q] = m_view.child(node, m_stored[q]);
+    }
+  }
+}
+
+void ConstantFactor::split(const FactorSquares& squares, const FactorQuadrants& out) const {
+  std::fill_n(out.mean, 4 * squares.count, m_value);
+  std::fill_n(out.detail, 4 * squares.count, no_node);
+}
+
+Float4 RotatedFactor::mean() const {
+  const Pyramid& pyramid = *m_reflectance.pyramid;
+  const Float4 near = pyramid.lookup(m_reflectance.entry0, 0, 0.5F, 0.5F);
+  const Float4 far = pyramid.lookup(m_reflectance.entry1, 0, 0.5F, 0.5F);
+  return near + (far - near) * m_reflectance.blend;
+}
+
+void RotatedFactor::split(const FactorSquares& squares, const FactorQuadrants& out) const {
+  const Pyramid& pyramid = *m_reflectance.pyramid;
+  Pyramid::Places places;
+  for (std::size_t i = 0; i < squares.count; ++i) {
+    const int level = squares.place[i].level + 1;
+    const float side = power_of_two(-level);
+    for (unsigned q = 0; q < 4; ++q) {
+      const Vec2 centre(
+          (2 * static_cast<float>(squares.place[i].column) + static_cast<float>(q & 1U) + 0.5F) *
+              side,
+          (2 * static_cast<float>(squares.place[i].row) + static_cast<float>(q >> 1U) + 0.5F) *
+              side);
+      const Vec3 w = square_to_sphere(centre);
+      const Vec2 p = sphere_to_square(m_reflectance.reflection.frame.to_local(w));
+      places.u[q] = p.x();
+      places.v[q] = p.y();
+      pyramid.set_level(places, q, level);
+    }
+    Pyramid::place(places, 4);
+    for (std::size_t q = 0; q < 4; ++q) {
+      out.mean[4 * i + q] = pyramid.lookup(m_reflectance.entry0, m_reflectance.entry1,
+                                           m_reflectance.blend, places, q);
+      out.detail[4 * i + q] = level < pyramid.levels() ? 0 : no_node;
+    }
+  }
+}
+
+} // namespace haarlight::wavelet

@@ -1,0 +1,30 @@
+#pragma once
+// The numbers of an adaptive product: what the quadrants of many squares weigh, worked out side by
+// side so that the processor's lanes are full and its waits overlap.
+
+#include <wavelet/adaptive_product.h>
+
+#include <array>
+#include <span>
+
+namespace haarlight::wavelet::detail {
+
+/// The four quadrants q = qx + 2 qy of a family.
+struct Quadrants {
+  unsigned visible = 0;      ///< bit q: some of the quadrant lies above the horizon
+  std::uint32_t children[4]; ///< nodes of the light tree, or no_node
+  Float4 density = {};       ///< the product's average weight; 0 below the horizon
+  Float4 error = {};         ///< what each leaves of the product's variance if it stays a leaf
+  std::array<Float4, 4> light;
+  std::array<Float4, 4> reflectance; ///< lanes R, G, B; 0 below the horizon
+};
+
+/// Families that are worked on together.
+inline constexpr std::size_t family_batch = 16;
+
+/// @param families at most family_batch
+/// @param floor    of the reflectance, lanes R, G, B
+void weigh_families(const TreeView& light, const RotatedReflectance& reflectance, Float4 floor,
+                    std::span<const Family> families, Quadrants* out);
+
+} // namespace haarlight::wavelet::detail

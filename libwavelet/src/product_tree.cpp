@@ -1,0 +1,77 @@
+#include <wavelet/product_tree.h>
+
+#include <array>
+
+namespace haarlight::wavelet {
+
+Rgb ProductTree::integral() const {
+  Float4 sum = {};
+  for (const ProductLeaf& leaf : m_leaves)
+    sum += leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
+  return to_rgb(sum);
+}
+
+void ProductTree::sum_upwards(const std::vector<std::int32_t>& parent_slots) {
+  for (std::size_t i = m_nodes.size(); i-- > 1;) {
+    const std::int32_t slot = parent_slots[i];
+    m_nodes[static_cast<std::size_t>(slot / 4)].weights[slot % 4] =
+        0.25F * lane_sum(m_nodes[i].weights);
+  }
+}
+
+/// Leads a descent to a leaf. @return its index
+std::int32_t ProductTree::descend_nodes(Descent& d) const {
+  std::int32_t next = 0;
+  while (next >= 0) {
+    const ProductNode& node = m_nodes[static_cast<std::size_t>(next)];
+    const unsigned q = steer(d, node.weights);
+    next = node.child[q];
+    d.pdf = node.weights[q]; // a node's mean is its parent's weight: only the last one counts
+  }
+  d.pdf /= mean();
+  return ~next;
+}
+
+Descent ProductTree::sample(float u1, float u2) const {
+  Descent d;
+  d.u1 = u1;
+  d.u2 = u2;
+  const std::int32_t leaf = descend_nodes(d);
+  descend_tree(density(leaf), d);
+  return d;
+}
+
+void ProductTree::sample(std::span<const Vec2> points, std::span<Descent> out) const {
+  std::array<TreeDensity, 64> densities;
+  for (std::size_t begin = 0; begin < out.size(); begin += densities.size()) {
+    const std::span<Descent> batch =
+        out.subspan(begin, std::min(densities.size(), out.size() - begin));
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      batch[i] = {};
+      batch[i].u1 = points[begin + i].x();
+      batch[i].u2 = points[begin + i].y();
+      densities[i] = density(descend_nodes(batch[i]));
+    }
+    descend_tree(std::span(densities).first(batch.size()), batch);
+  }
+}
+
+float ProductTree::pdf(float u, float v) const {
+  if (empty())
+    return 0;
+  Descent d;
+  std::int32_t next = 0;
+  while (next >= 0) {
+    const ProductNode& node = m_nodes[static_cast<std::size_t>(next)];
+    const unsigned q = steer_to(d, u, v);
+    next = node.child[q];
+    d.pdf = node.weights[q];
+    if (!(d.pdf > 0))
+      return 0;
+  }
+  d.pdf /= mean();
+  follow_tree(density(~next), u, v, d);
+  return d.pdf;
+}
+
+} // namespace haarlight::wavelet

@@ -1,0 +1,27 @@
+#pragma once
+// Signed values as colours.
+
+#include <image/image.h>
+
+#include <vector>
+
+namespace haarlight::image {
+
+/// Signed values on a square, row by row.
+struct SignedField {
+  int size = 0;
+  std::vector<float> values;
+};
+
+/// Of every four values the one farthest from zero. @param field of even size
+SignedField halved(const SignedField& field);
+
+/// Black at 0, red to yellow up to 1, blue to cyan down to −1; for display.
+Rgb false_colour(float t);
+
+/// The field in false colours of the cube root of each value's share in the largest magnitude, each
+/// value `scale` × `scale` pixels, above a legend of 22 rows: a bar of all colours, and the values
+/// that they stand for (320 pixels across have room for them).
+Picture false_colour_picture(const SignedField& field, int scale);
+
+} // namespace haarlight::image

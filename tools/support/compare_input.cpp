@@ -1,0 +1,146 @@
+#include <support/compare_input.h>
+
+#include <support/map_choice.h>
+#include <support/tool.h>
+
+#include <image/map_set_exr.h>
+
+#include <wavelet/error.h>
+#include <wavelet/input_file.h>
+#include <wavelet/tree_set.h>
+
+#include <cstring>
+
+namespace haarlight::tool {
+namespace {
+
+using wavelet::MapPlace;
+using wavelet::SetInfo;
+using wavelet::SetKind;
+using wavelet::SharedMaps;
+
+struct OpenSet {
+  std::string path;
+  SharedMaps maps;
+  bool grey = false; ///< holds luminance only
+
+  const SetInfo& info() const { return maps->info(); }
+};
+
+bool begins_as_exr(const InputFile& file) {
+  return file.bytes().size() >= 4 && std::memcmp(file.bytes().data(), "\x76\x2f\x31\x01", 4) == 0;
+}
+
+OpenSet open_set(const std::string& path) {
+  const InputFile file(path);
+  if (wavelet::begins_as_tree_set(file)) {
+    auto trees = std::make_shared<const wavelet::TreeSet>(path);
+    const bool grey = trees->channels() == 1;
+    return {path, wavelet::tree_maps(std::move(trees)), grey};
+  }
+  if (!begins_as_exr(file))
+    throw_input_error(path, "is neither a .haar file nor an EXR image", 0);
+  return {path, std::make_shared<const image::ExrMapSource>(path)};
+}
+
+std::string values_of(const SetInfo& info) {
+  switch (info.kind) {
+  case SetKind::Brdf:
+    return info.cosine ? "f_r cos" : "f_r without the cosine";
+  case SetKind::Light:
+    return info.world_frame ? "radiance in the world's frame" : "radiance in mirror frames";
+  case SetKind::Generic:
+    break;
+  }
+  return "plain values";
+}
+
+/// A generic set may hold anything.
+void check_values(const OpenSet& a, const OpenSet& b) {
+  const bool known = a.info().kind != SetKind::Generic && b.info().kind != SetKind::Generic;
+  if (known && values_of(a.info()) != values_of(b.info()))
+    throw_input_error(b.path, "holds " + values_of(b.info()) + ", " + a.path + " holds " +
+                                  values_of(a.info()) + "; sets of the same are needed");
+}
+
+std::string grid_text(const SetInfo& info) {
+  std::string text = std::to_string(info.columns) + " x " + std::to_string(info.rows) + " maps";
+  return info.rolls > 1 ? text + " for " + std::to_string(info.rolls) + " rolls" : text;
+}
+
+void check_grids(const OpenSet& a, const OpenSet& b) {
+  const bool rolls_known = a.info().kind == b.info().kind;
+  if (a.info().columns != b.info().columns || a.info().rows != b.info().rows ||
+      (rolls_known && a.info().rolls != b.info().rolls))
+    throw_input_error(b.path, "has " + grid_text(b.info()) + ", " + a.path + " has " +
+                                  grid_text(a.info()) +
+                                  "; equal grids are needed, or one map of each (--tree)");
+}
+
+void unfold_both(OpenSet& a, OpenSet& b, std::vector<std::string>& notes) {
+  if (a.info().fold == b.info().fold || a.info().rolls != b.info().rolls ||
+      a.info().columns != b.info().columns)
+    return;
+  a.maps = wavelet::unfolded(a.maps);
+  b.maps = wavelet::unfolded(b.maps);
+  notes.push_back("the sets are folded in different ways; all " + std::to_string(a.info().rolls) +
+                  " rolls are compared");
+}
+
+MapPlace place_in_b(const CompareInput& input, const SetInfo& info) {
+  if (!input.tree_b.empty())
+    return chosen_map(input.tree_b, info, "--tree-b");
+  if (info.map_count() == 1)
+    return {};
+  return chosen_map(input.tree, info, "--tree of " + input.compared);
+}
+
+void take_map(OpenSet& set, const MapPlace& place) {
+  set.maps = wavelet::one_map(set.maps, place.column, place.row);
+}
+
+void shrink_larger(const OpenSet& smaller, OpenSet& larger, std::vector<std::string>& notes) {
+  const int size = smaller.info().size;
+  if (larger.info().size <= size)
+    return;
+  notes.push_back(larger.path + ": maps of " + std::to_string(larger.info().size) +
+                  " px are averaged to the " + std::to_string(size) + " px of " + smaller.path);
+  larger.maps = wavelet::shrunk(larger.maps, size);
+}
+
+void reduce_colours(const OpenSet& grey, OpenSet& coloured, std::vector<std::string>& notes) {
+  if (!grey.grey || coloured.grey)
+    return;
+  coloured.maps = wavelet::in_luminance(coloured.maps);
+  notes.push_back(grey.path + ": holds luminance only, which is what is compared");
+}
+
+} // namespace
+
+ComparedSets open_compared(const CompareInput& input) {
+  if (input.tree.empty() && !input.tree_b.empty())
+    throw UsageError("--tree-b needs --tree");
+  OpenSet a = open_set(input.reference);
+  OpenSet b = open_set(input.compared);
+  ComparedSets sets;
+  sets.values = values_of(a.info().kind == SetKind::Generic ? b.info() : a.info());
+  check_values(a, b);
+  if (input.tree.empty()) {
+    unfold_both(a, b, sets.notes);
+  } else {
+    sets.first_a = chosen_map(input.tree, a.info(), "--tree");
+    sets.first_b = place_in_b(input, b.info());
+    take_map(a, sets.first_a);
+    take_map(b, sets.first_b);
+  }
+  check_grids(a, b);
+  shrink_larger(a, b, sets.notes);
+  shrink_larger(b, a, sets.notes);
+  reduce_colours(a, b, sets.notes);
+  reduce_colours(b, a, sets.notes);
+  sets.a = a.maps;
+  sets.b = b.maps;
+  return sets;
+}
+
+} // namespace haarlight::tool

@@ -1,0 +1,48 @@
+#include <support/tree_argument.h>
+
+#include <support/map_choice.h>
+#include <support/words.h>
+
+#include <wavelet/input_file.h>
+
+#include <map>
+
+namespace haarlight::tool {
+namespace {
+
+struct Word {
+  std::string path;
+  std::vector<double> place;
+};
+
+Word parsed(const std::string& word) {
+  if (word.empty() || word.back() != ']')
+    return {word, {0, 0}};
+  const std::size_t open = word.rfind('[');
+  if (open == std::string::npos || open == 0)
+    return {word, {0, 0}};
+  return {word.substr(0, open),
+          numbers_of(word.substr(open + 1, word.size() - open - 2), 2, 0, 65535)};
+}
+
+} // namespace
+
+std::string NamedTree::label() const {
+  return base_name(set->path()) + "[" + std::to_string(place.column) + "," +
+         std::to_string(place.row) + "]";
+}
+
+std::vector<NamedTree> open_trees(const std::vector<std::string>& words) {
+  std::map<std::string, std::shared_ptr<const wavelet::TreeSet>> sets;
+  std::vector<NamedTree> trees;
+  for (const std::string& text : words) {
+    const Word word = parsed(text);
+    auto& set = sets[word.path];
+    if (!set)
+      set = std::make_shared<wavelet::TreeSet>(word.path);
+    trees.push_back({set, chosen_map(word.place, set->info(), text)});
+  }
+  return trees;
+}
+
+} // namespace haarlight::tool
