@@ -31,6 +31,8 @@ void FileRules::check_header(const FileHeader& h, std::uint64_t offset) const {
   require(h.fold <= 2, offset + 44, "fold is not 0, 1 or 2");
   require(h.columns >= 1 && h.columns <= 65536, offset + 48, "columns lie outside 1 … 65536");
   require(h.rows >= 1 && h.rows <= 65536, offset + 52, "rows lie outside 1 … 65536");
+  require(static_cast<std::uint64_t>(h.columns) * h.rows < (std::uint64_t{1} << 31U), offset + 48,
+          "columns times rows are 2^31 or more");
   check_rolls(h, offset);
   require((h.flags & ~(flag_cosine | flag_world_frame)) == 0, offset + 60,
           "reserved flag bits are set");

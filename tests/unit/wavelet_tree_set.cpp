@@ -157,6 +157,13 @@ TEST_CASE("every broken rule is refused") {
       {"coefficient type", [](auto& b) { put(b, 40, 2U); }, true},
       {"fold", [](auto& b) { put(b, 44, 3U); }, true},
       {"columns", [](auto& b) { put(b, 48, 0U); }, false},
+      {"columns times rows",
+       [](auto& b) {
+         for (const std::size_t field : {48, 52, 56})
+           put(b, field, 65536U);
+         put(b, 112, checksum(b, 0, 112));
+       },
+       false},
       {"rolls", [](auto& b) { put(b, 56, 4U); }, true},
       {"flags", [](auto& b) { put(b, 60, 4U); }, true},
       {"reserved", [](auto& b) { put(b, 104, std::uint64_t{1}); }, true},
