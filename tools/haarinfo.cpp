@@ -9,7 +9,7 @@
 #include <image/png.h>
 
 #include <wavelet/error.h>
-#include <wavelet/tree_set.h>
+#include <wavelet/packed_set.h>
 
 using namespace haarlight;
 
@@ -47,15 +47,16 @@ void declare(tool::Tool& app, Options& options) {
 
 /// A file that is a .haar by its first bytes can be valid or not; any other is bad input.
 int validate(const tool::Tool& app, const std::string& path) {
+  const auto form = wavelet::file_form(path);
   tool::Report report;
   report.add("file", path);
   try {
-    const wavelet::TreeSet set(path);
-    report.add("valid", true);
+    const wavelet::TreeSet set = wavelet::open_tree_set(path);
+    report.add("form", tool::form_name(*form)).add("valid", true);
     app.print(report);
     return tool::exit_ok;
   } catch (const Error& error) {
-    if (!wavelet::begins_as_tree_set(InputFile(path)))
+    if (!form || error.kind() != ErrorKind::Input)
       throw;
     report.add("valid", false).add("problem", error.what());
     app.print(report);
@@ -86,7 +87,9 @@ void write_image(const Options& options, const wavelet::TreeSet& set,
 }
 
 int inspect(const tool::Tool& app, const Options& options) {
-  const wavelet::TreeSet set(options.path);
+  const auto form = wavelet::file_form(options.path);
+  const wavelet::TreeSet set = wavelet::open_tree_set(
+      options.path, options.tree.empty() ? wavelet::Check::Everything : wavelet::Check::WhenUsed);
   if (options.level.value_or(0) > set.levels())
     throw tool::UsageError("--level: the set has levels 0 to " + std::to_string(set.levels()));
   const std::vector<wavelet::MapPlace> trees = chosen_trees(options, set);
@@ -96,7 +99,7 @@ int inspect(const tool::Tool& app, const Options& options) {
     tool::dump_csv(set, trees, [&](const std::string& lines) { app.print(lines); });
     return tool::exit_ok;
   }
-  tool::Report report = tool::describe_header(set);
+  tool::Report report = tool::describe_header(set, *form);
   const int level = options.level.value_or(set.levels());
   tool::describe_figures(tool::measure_trees(set, trees, level), set.levels(),
                          app.json() || app.verbose(), report);

@@ -3,6 +3,8 @@
 #include "map_batches.h"
 #include "tree_builder.h"
 
+#include <wavelet/packed_set.h>
+#include <wavelet/quantize.h>
 #include <wavelet/transform.h>
 #include <wavelet/tree_set.h>
 
@@ -26,6 +28,8 @@ void describe(const CompressOptions& options, Provenance& provenance) {
     provenance.set("keep", std::to_string(*options.threshold.keep));
   else
     provenance.set("tolerance", number_text(options.threshold.tolerance));
+  if (options.quantize)
+    provenance.set("quantize", "yes");
 }
 
 void measure_pixels(const Map& original, const Map& kept, int channels, CompressReport& report) {
@@ -46,11 +50,27 @@ void measure_pixels(const Map& original, const Map& kept, int channels, Compress
   }
 }
 
+Map grey(Map map) {
+  for (std::size_t i = 0; i < map.rgb.size(); i += 3) {
+    Eigen::Map<Rgb> pixel(map.rgb.data() + i);
+    pixel = luminance(pixel);
+  }
+  return map;
+}
+
 /// The maps of one batch, compressed in parallel and stored in order.
 struct Slot {
   Tree tree;
   CompressReport report;
 };
+
+std::unique_ptr<TreeSink> sink_for(const CompressOptions& options, const SetInfo& info,
+                                   OutputFile& file) {
+  const int channels = options.luminance ? 1 : 3;
+  if (options.packed)
+    return std::make_unique<PackedSetWriter>(file, info, channels, options.coefficients);
+  return std::make_unique<TreeSetWriter>(file, info, channels, options.coefficients);
+}
 
 } // namespace
 
@@ -74,13 +94,18 @@ void CompressReport::add(const CompressReport& other) {
 
 Tree compress_map(const Map& map, const CompressOptions& options, CompressReport& report) {
   const int channels = options.luminance ? 1 : 3;
-  Map transformed = map;
+  Map transformed = options.luminance ? grey(map) : map;
   haar_forward(transformed.rgb.data(), map.size, 3);
   report = {};
   report.total_coefficients =
       static_cast<std::uint64_t>(map.size) * static_cast<std::uint64_t>(map.size) - 1;
-  report.kept_coefficients = apply_threshold(transformed, options.threshold);
-  Tree tree = build_tree(transformed, channels, options.coefficients);
+  Quantized quantized;
+  if (options.quantize)
+    quantized = apply_quantization(transformed, options.threshold);
+  else
+    quantized.coefficients = apply_threshold(transformed, options.threshold).coefficients;
+  report.kept_coefficients = quantized.coefficients;
+  Tree tree = build_tree(transformed, channels, options.coefficients, quantized.scale);
   report.nodes = tree.links.size();
   measure_pixels(map, tree.view().reconstruct(tree.levels), channels, report);
   return tree;
@@ -90,7 +115,7 @@ CompressReport compress_set(const MapSource& source, const CompressOptions& opti
                             OutputFile& file, const Progress& progress) {
   SetInfo info = source.info();
   describe(options, info.provenance);
-  TreeSetWriter writer(file, info, options.luminance ? 1 : 3, options.coefficients);
+  const std::unique_ptr<TreeSink> sink = sink_for(options, info, file);
   ConservationMeter meter(info);
   CompressReport total;
   for_each_map<Slot>(
@@ -100,11 +125,11 @@ CompressReport compress_set(const MapSource& source, const CompressOptions& opti
         meter.add(place.column, place.row, map, source.integral(place.column, place.row));
         slot.tree = compress_map(map, options, slot.report);
       },
-      [&](const Slot& slot) {
-        writer.add(slot.tree);
+      [&](Slot& slot) {
+        sink->add(std::move(slot.tree));
         total.add(slot.report);
       });
-  writer.finish();
+  sink->finish();
   total.bytes = file.position();
   total.conservation = meter.result();
   return total;

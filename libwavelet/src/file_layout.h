@@ -1,12 +1,18 @@
 #pragma once
 // The byte layout of .haar files, as FORMAT.md specifies it.
 
+#include <wavelet/map_set.h>
+
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
 
 namespace haarlight::wavelet {
 
 inline constexpr unsigned char file_magic[8] = {0x89, 'H', 'A', 'A', 'R', '\r', '\n', 0x1a};
+inline constexpr unsigned char packed_magic[8] = {0x89, 'H', 'A', 'A', 'P', '\r', '\n', 0x1a};
 inline constexpr std::uint32_t file_version = 1;
 inline constexpr std::uint32_t domain_octahedral = 1;
 inline constexpr std::uint32_t flag_cosine = 1;
@@ -63,5 +69,19 @@ inline std::uint64_t tree_size(std::uint64_t nodes, std::uint64_t levels, std::u
   return align_up(4 * (levels + 1) + 4 * nodes + 3 * channels * coefficient_size * nodes +
                   tree_padding);
 }
+
+/// By the name in the magic; what comes after it tells damage by text-mode transfers.
+inline bool begins_with(std::span<const std::byte> bytes, const unsigned char (&magic)[8]) {
+  return bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, 5) == 0;
+}
+inline bool begins_mapped(std::span<const std::byte> bytes) {
+  return begins_with(bytes, file_magic);
+}
+inline bool begins_packed(std::span<const std::byte> bytes) {
+  return begins_with(bytes, packed_magic);
+}
+
+/// What header and text say of a set.
+SetInfo info_from(const FileHeader& header, const std::string& text);
 
 } // namespace haarlight::wavelet

@@ -40,15 +40,15 @@ std::size_t regular_file_size(const Descriptor& file, const std::string& path) {
 
 } // namespace
 
-InputFile::InputFile(const std::string& path) : m_path(path) {
+InputFile::InputFile(const std::string& path, std::string name) : m_path(std::move(name)) {
   // O_NONBLOCK: opening a FIFO must not hang.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  m_size = regular_file_size(file, path);
+  m_size = regular_file_size(file, m_path);
   if (m_size == 0)
     return;
   void* address = ::mmap(nullptr, m_size, PROT_READ, MAP_PRIVATE, file.value, 0);
   if (address == MAP_FAILED)
-    throw_input_error(path, std::string("cannot be mapped: ") + std::strerror(errno));
+    throw_input_error(m_path, std::string("cannot be mapped: ") + std::strerror(errno));
   m_data = static_cast<const std::byte*>(address);
 }
 

@@ -26,9 +26,9 @@ public:
     m_tree.mean = channels == 3 ? mean : Rgb::Constant(luminance(mean));
   }
 
-  Tree build() {
+  Tree build(float scale) {
     mark_squares();
-    choose_scale();
+    choose_scale(scale);
     m_tree.level_begin.assign(1, 0);
     std::vector<Square> level;
     if (m_levels > 0 && m_present[0][0] != 0)
@@ -82,11 +82,13 @@ private:
     return mask;
   }
 
-  void choose_scale() {
+  /// The scale given, if it is one and the largest difference fits it.
+  void choose_scale(float scale) {
     float largest = 0;
     for (std::size_t i = 3; i < m_map.rgb.size(); ++i)
       largest = std::max(largest, std::abs(m_map.rgb[i]));
-    m_tree.scale = coefficient_scale(m_tree.type, largest);
+    const bool fits = scale > 0 && largest / scale <= largest_stored_half;
+    m_tree.scale = fits ? scale : coefficient_scale(m_tree.type, largest);
   }
 
   /// Appends a level's nodes and returns the squares of the next.
@@ -124,8 +126,8 @@ private:
 
 } // namespace
 
-Tree build_tree(const Map& transformed, int channels, CoefficientType type) {
-  return TreeBuilder(transformed, channels, type).build();
+Tree build_tree(const Map& transformed, int channels, CoefficientType type, float scale) {
+  return TreeBuilder(transformed, channels, type).build(scale);
 }
 
 } // namespace haarlight::wavelet

@@ -10,6 +10,7 @@ namespace haarlight::wavelet {
 /// ones
 ///                    are zero get no node
 /// @param channels    3, or 1 to store luminance
-Tree build_tree(const Map& transformed, int channels, CoefficientType type);
+/// @param scale       of the coefficients, if they fit it; 0 = a power of two that fits them
+Tree build_tree(const Map& transformed, int channels, CoefficientType type, float scale = 0);
 
 } // namespace haarlight::wavelet

@@ -89,6 +89,49 @@ expect 2 maps2haar set.exr -o x.haar --criterion count
 expect 2 maps2haar set.exr -o x.haar --tolerance -1
 expect 2 maps2haar set.exr -o x.haar --coefficients double
 
+# the packed form: both ways to it give the same bytes, and it becomes what it was
+expect 0 maps2haar one.haar --pack -o packed.haar --json
+prints '"form": "packed"'
+expect 0 maps2haar set.exr -o direct.haar --pack --threads 1
+same packed.haar direct.haar
+[ "$(stat -c %s packed.haar)" -lt "$(stat -c %s one.haar)" ] || fail "packing does not shrink"
+expect 0 maps2haar packed.haar --unpack -o unpacked.haar --threads 2
+same one.haar unpacked.haar
+expect 0 maps2haar set.exr -o rounded.haar --criterion l2 --tolerance 0.03 --quantize --pack --json
+prints '"quantize": true'
+[ $((2 * $(stat -c %s rounded.haar))) -lt "$(stat -c %s packed.haar)" ] || fail "--quantize hardly shrinks"
+for form in packed one; do
+  expect 0 haarinfo $form.haar --json
+  expect 0 haarinfo $form.haar --validate
+  prints "yes"
+  expect 0 haarinfo $form.haar --tree 1,1 --image $form.exr
+done
+same packed.exr one.exr
+expect 0 haarinfo packed.haar
+prints "packed"
+expect 0 haarinfo one.haar
+prints "mapped"
+TMPDIR=$log/missing expect 0 haarinfo packed.haar # no such folder: /tmp serves
+size=$(stat -c %s packed.haar)
+for offset in 9 20 30 70 120 155 $((size / 2)) $((size - 10)); do
+  cp packed.haar bad.haar
+  patch bad.haar "$offset" '\245'
+  expect 1 haarinfo bad.haar --validate
+  prints "bad.haar"
+  expect 3 haarinfo bad.haar
+  expect 3 maps2haar bad.haar --unpack -o x.haar
+  says bad.haar
+done
+expect 3 maps2haar one.haar --unpack -o x.haar
+expect 3 maps2haar packed.haar --pack -o x.haar
+expect 3 maps2haar set.exr --unpack -o x.haar
+expect 2 maps2haar one.haar --pack --unpack -o x.haar
+expect 2 maps2haar one.haar --pack --tolerance 0.1 -o x.haar
+refuses_bad_input x.haar maps2haar @ --unpack -o x.haar
+refuses_bad_output .haar maps2haar one.haar --pack -o @
+refuses_bad_output .haar maps2haar packed.haar --unpack -o @
+rm packed.haar direct.haar unpacked.haar rounded.haar packed.exr one.exr bad.haar
+
 # haarsheet
 expect 0 haarsheet atlas.exr atlas.exr --caption a --caption b -o sheet.png
 expect 2 haarsheet atlas.exr atlas.exr --caption a -o sheet.png

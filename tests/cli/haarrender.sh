@@ -79,7 +79,9 @@ wrong 's/"haar": "probe.haar"/"haar": "brdf.haar"/' brdf.haar
 wrong 's/}] }/}] /' wrong.json
 head -c 400 brdf.haar >cut.haar
 wrong 's/brdf.haar/cut.haar/' cut.haar
-rm wrong.json cut.haar
+"$bin/maps2haar" brdf.haar --pack -o packed.haar >/dev/null
+wrong 's/brdf.haar/packed.haar/' "packed.haar: byte 0: is packed; maps2haar --unpack makes"
+rm wrong.json cut.haar packed.haar
 
 # outputs that cannot be written
 refuses_bad_output .exr haarrender scene.json -o @ --spp 1

@@ -1,16 +1,14 @@
-#include "random_map.h"
+#include "set_files.h"
 #include "small_reader.h"
 #include "temporary_folder.h"
 
 #include <wavelet/compress.h>
 #include <wavelet/error.h>
 #include <wavelet/parallel.h>
-#include <wavelet/tree_set.h>
 
 #include <catch2/catch.hpp>
 
 #include <cstdio>
-#include <fstream>
 #include <functional>
 #include <sstream>
 
@@ -18,65 +16,6 @@ using namespace haarlight;
 using namespace haarlight::wavelet;
 
 namespace {
-
-/// Random maps as a set.
-class RandomSource : public MapSource {
-public:
-  RandomSource(int size, int columns, int rows) {
-    m_info.size = size;
-    m_info.columns = columns;
-    m_info.rows = rows;
-    m_info.units = "none";
-    m_info.frame = "plain square";
-    m_info.provenance.set("source", "random");
-  }
-  const SetInfo& info() const override { return m_info; }
-  Map make(int column, int row) const override {
-    return random_map(m_info.size, static_cast<unsigned>(17 * row + column));
-  }
-
-private:
-  SetInfo m_info;
-};
-
-CompressOptions keep_all(CoefficientType type = CoefficientType::Half) {
-  CompressOptions options;
-  options.threshold.criterion = Criterion::L2;
-  options.threshold.tolerance = 0;
-  options.coefficients = type;
-  return options;
-}
-
-void write_set(const std::string& path, const MapSource& source, const CompressOptions& options) {
-  OutputFile file(path);
-  compress_set(source, options, file);
-  file.commit();
-}
-
-std::string read_bytes(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void write_bytes(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
-template <class T>
-void put(std::string& bytes, std::size_t at, T value) {
-  bytes.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-template <class T>
-T get(const std::string& bytes, std::size_t at) {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
-
-std::uint64_t checksum(const std::string& bytes, std::size_t at, std::size_t size) {
-  return hash_bytes(std::as_bytes(std::span(bytes.data() + at, size)));
-}
 
 /// Makes all checksums right again, so that a rule is tested and not its checksum.
 void seal(std::string& bytes) {
@@ -218,6 +157,13 @@ TEST_CASE("every broken rule is refused") {
       {"coefficient type", [](auto& b) { put(b, 40, 2U); }, true},
       {"fold", [](auto& b) { put(b, 44, 3U); }, true},
       {"columns", [](auto& b) { put(b, 48, 0U); }, false},
+      {"columns times rows",
+       [](auto& b) {
+         for (const std::size_t field : {48, 52, 56})
+           put(b, field, 65536U);
+         put(b, 112, checksum(b, 0, 112));
+       },
+       false},
       {"rolls", [](auto& b) { put(b, 56, 4U); }, true},
       {"flags", [](auto& b) { put(b, 60, 4U); }, true},
       {"reserved", [](auto& b) { put(b, 104, std::uint64_t{1}); }, true},
@@ -238,6 +184,22 @@ TEST_CASE("every broken rule is refused") {
          put(b, 112, checksum(b, 0, 112));
        },
        false},
+      {"gap between trees",
+       [=](auto& b) {
+         b.insert(index, 16, '\0');
+         put(b, index + 16 + 40, get<std::uint64_t>(b, index + 16 + 40) + 16);
+         for (const std::size_t field : {16, 64, 80})
+           put(b, field, get<std::uint64_t>(b, field) + 16);
+       },
+       true},
+      {"gap before the index",
+       [=](auto& b) {
+         b.insert(index, 16, '\0');
+         for (const std::size_t field : {16, 64, 80})
+           put(b, field, get<std::uint64_t>(b, field) + 16);
+       },
+       true},
+      {"padding after a tree", [=](auto& b) { b[index - 1] = 1; }, true},
       {"node count", [=](auto& b) { put(b, index + 16, 1U << 28U); }, true},
       {"too many nodes", [=](auto& b) { put(b, index + 16, 1U << 27U); }, true},
       {"scale", [=](auto& b) { put(b, index + 20, 0.0F); }, true},
@@ -282,6 +244,27 @@ TEST_CASE("any flipped byte is noticed") {
     INFO("byte " << i);
     CHECK_THROWS_AS(TreeSet(path), Error);
   }
+}
+
+TEST_CASE("checked when used, a set hands out no broken tree, and opens all the same") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("set.haar");
+  write_set(path, RandomSource(8, 3, 1), keep_all());
+  std::string bytes = read_bytes(path);
+  const auto second = get<std::uint64_t>(bytes, get<std::uint64_t>(bytes, 64) + 40);
+  bytes[second + 60] ^= 1;
+  write_bytes(path, bytes);
+  CHECK_THROWS_AS(TreeSet(path), Error);
+  const TreeSet set(path, Check::WhenUsed);
+  CHECK(set.tree(0, 0).reconstruct(3).rgb.size() == 3 * 64);
+  CHECK(set.level_nodes(2, 0, 1) > 0);
+  for (int again = 0; again < 2; ++again) {
+    CHECK_THROWS_AS(set.tree(1, 0), Error);
+    CHECK_THROWS_AS(set.level_nodes(1, 0, 0), Error);
+  }
+  put(bytes, get<std::uint64_t>(bytes, 64) + 16, 5U); // the index is checked either way
+  write_bytes(path, bytes);
+  CHECK_THROWS_AS(TreeSet(path, Check::WhenUsed), Error);
 }
 
 TEST_CASE("what is no .haar file is refused with the right kind of error") {

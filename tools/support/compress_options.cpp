@@ -9,8 +9,13 @@ using wavelet::Criterion;
 
 namespace {
 
-constexpr std::array<const char*, 5> compress_option_names = {
-    "--criterion", "--tolerance", "--keep", "--coefficients", "--luminance"};
+constexpr std::array<const char*, 6> threshold_option_names = {
+    "--criterion", "--tolerance", "--keep", "--coefficients", "--luminance", "--quantize"};
+
+void refuse(const Tool& tool, const char* name, const char* why) {
+  if (tool.given(name))
+    throw UsageError(std::string(name) + why);
+}
 
 } // namespace
 
@@ -34,6 +39,11 @@ void add_compress_options(Tool& tool, MapOutput& output) {
       {{"half", wavelet::CoefficientType::Half}, {"float", wavelet::CoefficientType::Float}},
       "Precision of stored coefficients: 16 or 32 bits");
   tool.flag(options.luminance, "--luminance", "Store the luminance in place of RGB");
+  tool.flag(options.quantize, "--quantize",
+            "Round what is kept as coarsely as the tolerance allows; with l2 the bound holds for "
+            "both. Makes --pack's files much smaller");
+  tool.flag(options.packed, "--pack",
+            "Write the packed form, for transport: maps2haar --unpack gives the mapped form back");
 }
 
 CompressOptions compress_options(const MapOutput& output, const wavelet::SetInfo& info) {
@@ -51,9 +61,14 @@ CompressOptions compress_options(const MapOutput& output, const wavelet::SetInfo
 }
 
 void refuse_compress_options(const Tool& tool) {
-  for (const char* name : compress_option_names)
-    if (tool.given(name))
-      throw UsageError(std::string(name) + " is for .haar files, the output is an .exr");
+  for (const char* name : threshold_option_names)
+    refuse(tool, name, " is for .haar files, the output is an .exr");
+  refuse(tool, "--pack", " is for .haar files, the output is an .exr");
+}
+
+void refuse_threshold_options(const Tool& tool) {
+  for (const char* name : threshold_option_names)
+    refuse(tool, name, " is for maps, the input is a .haar file");
 }
 
 } // namespace haarlight::tool

@@ -5,6 +5,7 @@
 
 #include <image/image.h>
 
+#include <wavelet/packed_set.h>
 #include <wavelet/tree_set.h>
 
 #include <cstdint>
@@ -38,8 +39,11 @@ std::vector<wavelet::MapPlace> all_trees(const wavelet::TreeSet& set);
 std::vector<TreeFigures> measure_trees(const wavelet::TreeSet& set,
                                        const std::vector<wavelet::MapPlace>& trees, int level);
 
-/// Header and provenance of a set.
-Report describe_header(const wavelet::TreeSet& set);
+/// `mapped` or `packed`.
+const char* form_name(wavelet::FileForm form);
+
+/// Header and provenance of a set. @param form of the file that it was opened from
+Report describe_header(const wavelet::TreeSet& set, wavelet::FileForm form);
 /// Adds counts per level, sparsity, energy, negative mass and sizes, summed over `figures`, and, if
 /// asked for, a line for each tree.
 void describe_figures(const std::vector<TreeFigures>& figures, int levels, bool list_trees,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace haarlight::tool {
 namespace {
@@ -89,12 +90,19 @@ void describe_tree(const TreeFigures& tree, Report& report) {
 
 } // namespace
 
-Report describe_header(const TreeSet& set) {
+const char* form_name(wavelet::FileForm form) {
+  return form == wavelet::FileForm::Packed ? "packed" : "mapped";
+}
+
+Report describe_header(const TreeSet& set, wavelet::FileForm form) {
   const wavelet::SetInfo& info = set.info();
   Report report;
   report.add("file", set.path())
-      .add("bytes", set.file_bytes())
-      .add("kind", kind_name(info.kind))
+      .add("form", form_name(form))
+      .add("bytes", static_cast<std::uint64_t>(std::filesystem::file_size(set.path())));
+  if (form == wavelet::FileForm::Packed)
+    report.add("unpacked_bytes", set.file_bytes());
+  report.add("kind", kind_name(info.kind))
       .add("domain", "octahedral equal-area (Clarberg 2008)")
       .add("map_size", info.size, "px")
       .add("levels_stored", set.levels())

@@ -21,7 +21,7 @@ struct MapOutput {
   double conservation_tolerance = 0.01; ///< largest relative error of the set's total luminance
 };
 
-/// Declares --criterion, --tolerance, --keep, --coefficients and --luminance.
+/// Declares --criterion, --tolerance, --keep, --coefficients, --luminance, --quantize and --pack.
 void add_compress_options(Tool& tool, MapOutput& output);
 
 /// The compression options as given. @throws UsageError for ones that contradict each other
@@ -29,6 +29,9 @@ wavelet::CompressOptions compress_options(const MapOutput& output, const wavelet
 
 /// @throws UsageError if one of the compression options was given
 void refuse_compress_options(const Tool& tool);
+
+/// @throws UsageError if one of them was given that changes trees: any but --pack
+void refuse_threshold_options(const Tool& tool);
 
 /// Declares -o, the compression options, --conservation-tolerance and --json.
 void add_map_output(Tool& tool, MapOutput& output);

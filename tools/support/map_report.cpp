@@ -31,6 +31,8 @@ void describe(const CompressReport& result, const CompressOptions& options, Repo
     part.add("keep", *options.threshold.keep);
   else
     part.add("tolerance", options.threshold.tolerance);
+  if (options.quantize)
+    part.add("quantize", true);
   part.add("coefficients", result.total_coefficients)
       .add("kept_coefficients", result.kept_coefficients)
       .add("kept_share", share(kept, total))

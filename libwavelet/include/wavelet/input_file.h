@@ -15,7 +15,9 @@ class InputFile {
 public:
   /// @throws Error(Input) if the file is missing, unreadable, or no regular file (a directory, FIFO
   /// …)
-  explicit InputFile(const std::string& path);
+  explicit InputFile(const std::string& path) : InputFile(path, path) {}
+  /// @param name what path() says, and errors with it
+  InputFile(const std::string& path, std::string name);
   ~InputFile();
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&& other) noexcept;

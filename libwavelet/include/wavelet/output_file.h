@@ -22,6 +22,8 @@ public:
   OutputFile& operator=(const OutputFile&) = delete;
 
   const std::string& path() const { return m_path; }
+  /// Where the bytes lie until commit().
+  const std::string& temporary() const { return m_temporary; }
 
   /// Appends at the current position. @throws Error(Output), for example when the disk is full
   void write(const void* data, std::size_t size);

@@ -38,8 +38,12 @@ struct ThresholdOptions {
 /// map, whose every detail goes into every product, else 0.0005. L2: 0.01. Linf: 0.002.
 double default_tolerance(const SetInfo& info, Criterion criterion);
 
+struct Kept {
+  std::size_t coefficients = 0; ///< RGB triples kept, the mean not counted
+  double limit = 0;             ///< the largest rank dropped, or its bound
+};
+
 /// Sets dropped coefficients of a map transformed by haar_forward() to zero, all channels at once.
-/// @return the number of coefficients (RGB triples, the mean not counted) kept
-std::size_t apply_threshold(Map& transformed, const ThresholdOptions& options);
+Kept apply_threshold(Map& transformed, const ThresholdOptions& options);
 
 } // namespace haarlight::wavelet

@@ -6,78 +6,112 @@
 #include <wavelet/output_file.h>
 #include <wavelet/tree.h>
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace haarlight::wavelet {
 
-/// A .haar file, mapped and checked once when opened; its trees are used where they lie.
+class SetLayout;
+
+/// When the trees of a file are checked. Header, index and text are checked at opening either way,
+/// and no tree is ever handed out unchecked.
+enum class Check {
+  Everything, ///< all trees at opening, from several threads
+  WhenUsed    ///< a tree when it is first asked for, so that opening takes no time for the others
+};
+
+/// A .haar file in its mapped form; its trees are used where they lie.
 class TreeSet {
 public:
-  /// Maps the file and checks all of it: header, index, structure and checksum of every tree.
-  /// @throws Error(Input) naming the first broken rule of FORMAT.md and its byte offset
-  explicit TreeSet(const std::string& path);
+  /// Maps the file and checks it: checksum and structure of a tree in one go.
+  /// @throws Error(Input) naming the first broken rule of FORMAT.md and its byte offset; for a
+  ///         packed file, what unpacks it
+  explicit TreeSet(const std::string& path, Check check = Check::Everything);
+  explicit TreeSet(InputFile file, Check check = Check::Everything);
 
   const std::string& path() const { return m_file.path(); }
   std::uint64_t file_bytes() const { return m_file.bytes().size(); }
+  std::span<const std::byte> bytes() const { return m_file.bytes(); }
   const SetInfo& info() const { return m_info; }
   int levels() const { return m_levels; }
   int channels() const { return m_channels; }
   CoefficientType coefficients() const { return m_type; }
 
-  /// The stored tree of a column and a row; valid while this set lives.
+  /// The stored tree of a column and a row; valid while this set lives. Safe from several threads.
   /// @param column 0 ≤ column < info().columns
   /// @param row    0 ≤ row < info().rows
+  /// @throws Error(Input) with Check::WhenUsed, if the tree breaks a rule
   const TreeView& tree(int column, int row) const {
-    return m_trees[static_cast<std::size_t>(row) * static_cast<std::size_t>(m_info.columns) +
-                   static_cast<std::size_t>(column)];
+    const std::size_t i = place(column, row);
+    if (!m_checked[i].set.load(std::memory_order_acquire))
+      check_tree(i);
+    return m_trees[i];
   }
 
-  /// Nodes of a tree at a level, 0 ≤ level < levels().
+  /// Nodes of a tree at a level, 0 ≤ level < levels(). @throws as tree()
   std::uint32_t level_nodes(int column, int row, int level) const;
 
   /// Bytes a tree takes in the file.
   std::uint64_t tree_bytes(int column, int row) const;
 
 private:
+  /// An atomic that a vector can hold.
+  struct Flag {
+    std::atomic<bool> set = false;
+  };
+
+  std::size_t place(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_info.columns) +
+           static_cast<std::size_t>(column);
+  }
+  std::uint64_t bytes_of(const TreeView& view) const;
+  void check_tree(std::size_t i) const;
+
   InputFile m_file;
   SetInfo m_info;
   int m_levels = 0;
   int m_channels = 3;
   CoefficientType m_type = CoefficientType::Half;
   std::vector<TreeView> m_trees;
+  std::vector<std::uint64_t> m_checksums;
+  mutable std::vector<Flag> m_checked;
 };
 
-/// True if the first bytes are those of a .haar file, which may be damaged all the same.
+/// True if the first bytes are those of a .haar file of either form, which may be damaged all the
+/// same.
 bool begins_as_tree_set(const InputFile& file);
 
-/// Writes the trees of a set one after the other, column fastest, then finish(). Memory: the index.
-class TreeSetWriter {
+/// Takes the trees of a set one after the other, column fastest, then finish().
+class TreeSink {
+public:
+  virtual ~TreeSink() = default;
+  /// @throws Error(Output)
+  virtual void add(Tree tree) = 0;
+  /// All trees must have been added. @throws Error(Output)
+  virtual void finish() = 0;
+};
+
+/// Writes a set in its mapped form. Memory: the index.
+class TreeSetWriter : public TreeSink {
 public:
   /// @param levels   log2 of info.size
   /// @param channels 3 or 1
   TreeSetWriter(OutputFile& file, const SetInfo& info, int channels, CoefficientType type);
+  ~TreeSetWriter() override;
 
-  /// Appends the next tree. @throws Error(Output)
-  void add(const Tree& tree);
+  void add(Tree tree) override;
+  void finish() override;
 
-  /// Writes index, text and header; all trees must have been added. @throws Error(Output)
-  void finish();
+  /// After finish(): the header as written.
+  std::span<const std::byte> header() const;
 
 private:
-  struct Entry {
-    std::uint64_t offset;
-    std::uint64_t checksum;
-    std::uint32_t node_count;
-    float scale;
-    float mean[3];
-  };
   OutputFile& m_file;
-  SetInfo m_info;
-  int m_channels;
-  CoefficientType m_type;
-  std::vector<Entry> m_entries;
+  std::unique_ptr<SetLayout> m_layout;
 };
 
 } // namespace haarlight::wavelet
