@@ -1,8 +1,8 @@
 // The published product on hash tables (<wavelet/reference.h>), beside two rivals in the same run:
-// the synchronous product that the toolkit uses, and the dense way, multiplying RGB images pixel by pixel
-// and averaging all the way up, in loops that the compiler vectorises. All three multiply the same
-// two trees, all three channels, and must agree on the integral. Images and coefficient sets are
-// made beforehand.
+// the synchronous product that the toolkit uses, and the dense way, multiplying RGB images pixel by
+// pixel and averaging all the way up, in loops that the compiler vectorises. All three multiply the
+// same two trees, all three channels, and must agree on the integral. Images and coefficient sets
+// are made beforehand.
 //
 // Usage: reference_bench [options of Google Benchmark] [BRDF.haar LIGHT.haar]
 // The files may also be named by HAARLIGHT_BENCH_BRDF and HAARLIGHT_BENCH_LIGHT; without any the
@@ -125,7 +125,7 @@ struct Factors {
   Factor brdf;
   Factor light;
   std::vector<Square> brdf_squares; ///< of which the synchronous product finds the averages
-  std::vector<Square> all_squares;   ///< whose averages may differ from their parent's
+  std::vector<Square> all_squares;  ///< whose averages may differ from their parent's
 
   explicit Factors(int size)
       : brdf(paths.brdf.empty() ? synthetic_brdf(size) : stored_map(paths.brdf, size), 5e-4),
