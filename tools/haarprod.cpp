@@ -3,7 +3,7 @@
 #include <support/tree_argument.h>
 #include <support/words.h>
 
-#include <wavelet/error.h>
+#include <wavelet/file_hash.h>
 #include <wavelet/multiply.h>
 #include <wavelet/sphere_map.h>
 
@@ -62,7 +62,7 @@ wavelet::SetInfo describe(const Options& options, const std::vector<tool::NamedT
   for (std::size_t i = 0; i < trees.size(); ++i) {
     const std::string name = "factor" + std::to_string(i + 1);
     provenance.set(name, trees[i].label());
-    provenance.set(name + "_hash", hash_text(InputFile(trees[i].set->path()).bytes()));
+    provenance.set(name + "_hash", file_hash(trees[i].set->path()));
   }
   if (options.factor)
     provenance.set("split", std::to_string(*options.factor));

@@ -25,7 +25,7 @@ Light::Light(const LightDescription& description, probe::Lookup lookup) {
                         "the one world-frame map of --orientations 1");
   }
   if (!description.table.empty()) {
-    m_rotated.emplace(description.table, wavelet::SetKind::Light);
+    m_rotated.emplace(description.table, wavelet::SetKind::Light, wavelet::Check::WhenUsed);
     if (m_rotated->info().world_frame)
       throw_input_error(description.table,
                         "holds the one world-frame map, which belongs under \"haar\"; "

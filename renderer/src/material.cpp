@@ -28,7 +28,7 @@ Material::Material(const MaterialDescription& description, brdf::Lookup lookup)
                                           "\"haar\" wants one made with --roll 1");
   }
   if (!description.table.empty()) {
-    m_rolls.emplace(description.table, wavelet::SetKind::Brdf);
+    m_rolls.emplace(description.table, wavelet::SetKind::Brdf, wavelet::Check::WhenUsed);
     require_cosine(description.table, *m_rolls);
   }
   if (!m_lambert && !m_measured && !m_lobes)

@@ -43,7 +43,7 @@ public:
 
 private:
   /// Direct-mapped: what neighbouring pixels share is found again, and memory stays bounded.
-  static constexpr std::size_t cache_size = 256;
+  static constexpr std::size_t cache_size = 64;
 
   struct Cached {
     const Material* material = nullptr;

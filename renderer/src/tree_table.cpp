@@ -7,15 +7,12 @@ namespace haarlight::renderer {
 
 using wavelet::SetKind;
 
-TreeTable::TreeTable(const std::string& path, SetKind kind)
-    : m_file(std::make_unique<wavelet::TreeSet>(path)), m_info(m_file->info()) {
+TreeTable::TreeTable(const std::string& path, SetKind kind, wavelet::Check check)
+    : m_file(std::make_unique<wavelet::TreeSet>(path, check)), m_info(m_file->info()) {
   if (m_info.kind != kind)
     throw_input_error(path, kind == SetKind::Brdf
                                 ? "holds no BRDF set; one made by brdf2maps is needed"
                                 : "holds no light set; one made by probe2maps is needed");
-  for (int row = 0; row < m_info.rows; ++row)
-    for (int column = 0; column < m_info.columns; ++column)
-      m_views.push_back(m_file->tree(column, row));
 }
 
 TreeTable::TreeTable(const wavelet::MapSource& source) : m_info(source.info()) {
@@ -30,6 +27,15 @@ TreeTable::TreeTable(const wavelet::MapSource& source) : m_info(source.info()) {
   });
   for (const wavelet::Tree& tree : m_owned)
     m_views.push_back(tree.view());
+}
+
+std::vector<wavelet::TreeView> TreeTable::trees() const {
+  std::vector<wavelet::TreeView> all;
+  all.reserve(static_cast<std::size_t>(m_info.map_count()));
+  for (int row = 0; row < m_info.rows; ++row)
+    for (int column = 0; column < m_info.columns; ++column)
+      all.push_back(tree(column, row));
+  return all;
 }
 
 } // namespace haarlight::renderer

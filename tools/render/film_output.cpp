@@ -5,6 +5,7 @@
 #include <image/image_exr.h>
 #include <image/png.h>
 
+#include <wavelet/file_hash.h>
 #include <wavelet/input_file.h>
 
 #include <algorithm>
@@ -38,8 +39,7 @@ Provenance provenance_of(const SceneDescription& scene, const RenderOptions& opt
   result.set("scene", base_name(scene.path) + " " + scene.hash);
   int number = 0;
   for (const std::string& file : sources_of(scene))
-    result.set("source " + std::to_string(++number),
-               base_name(file) + " " + hash_text(InputFile(file).bytes()));
+    result.set("source " + std::to_string(++number), base_name(file) + " " + file_hash(file));
   result.set("sampler", sampler_name(options.sampler));
   result.set("estimator", estimator_name(options.estimator));
   result.set("points", options.points == Points::Sobol ? "sobol" : "random");
