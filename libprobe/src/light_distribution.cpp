@@ -7,6 +7,7 @@
 #include <wavelet/parallel.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace haarlight::probe {
@@ -145,22 +146,44 @@ float LightDistribution::density(std::uint32_t row_width, std::uint32_t column_w
   return probability / std::max(solid_angle, 1e-30F);
 }
 
-LightSample LightDistribution::sample(const Vec2& u) const {
-  const Step row = find(m_rows.data(), m_row_guide.data(), row_parts * m_height, u.y());
+LightDistribution::Step LightDistribution::find_row(float u) const {
+  return find(m_rows.data(), m_row_guide.data(), row_parts * m_height, u);
+}
+
+LightDistribution::Step LightDistribution::find_column(const Step& row, float u) const {
   const auto y = static_cast<std::size_t>(row.index);
-  const auto width = static_cast<std::size_t>(m_width);
-  const Step column = find(m_columns.data() + y * (width + 1),
-                           m_column_guide.data() + y * static_cast<std::size_t>(m_column_parts),
-                           m_column_parts, u.x());
-  const Place place = place_in_pixel(column, row);
-  return with_mapping(m_mapping, [&](auto map) -> LightSample {
-    float wx = 0;
-    float wy = 0;
-    float wz = 0;
-    float stretch = 0;
-    map.direction_and_density(place.u, place.v, wx, wy, wz, stretch);
-    return {{wx, wy, wz}, density(row.width, column.width, place.area * stretch)};
-  });
+  return find(m_columns.data() + y * static_cast<std::size_t>(m_width + 1),
+              m_column_guide.data() + y * static_cast<std::size_t>(m_column_parts), m_column_parts,
+              u);
+}
+
+LightSample LightDistribution::sample(const Vec2& u) const {
+  LightSample result;
+  sample(std::span(&u, 1), std::span(&result, 1));
+  return result;
+}
+
+void LightDistribution::sample(std::span<const Vec2> points, std::span<LightSample> out) const {
+  constexpr std::size_t batch = 64;
+  std::array<Step, batch> rows;
+  std::array<Step, batch> columns;
+  for (std::size_t begin = 0; begin < points.size(); begin += batch) {
+    const std::size_t count = std::min(batch, points.size() - begin);
+    for (std::size_t i = 0; i < count; ++i)
+      rows[i] = find_row(points[begin + i].y());
+    for (std::size_t i = 0; i < count; ++i)
+      columns[i] = find_column(rows[i], points[begin + i].x());
+    with_mapping(m_mapping, [&](auto map) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const Place place = place_in_pixel(columns[i], rows[i]);
+        LightSample& s = out[begin + i];
+        float stretch = 0;
+        map.direction_and_density(place.u, place.v, s.direction.x(), s.direction.y(),
+                                  s.direction.z(), stretch);
+        s.pdf = density(rows[i].width, columns[i].width, place.area * stretch);
+      }
+    });
+  }
 }
 
 float LightDistribution::pdf(const Vec3& w) const {

@@ -142,8 +142,25 @@ void Probe::mask_outside() {
   }
 }
 
-Rgb Probe::radiance(const Vec3& w) const {
-  const Vec2 uv = direction_to_image(m_mapping, w);
+Rgb Probe::radiance(const Vec3& w) const { return looked_up(direction_to_image(m_mapping, w)); }
+
+void Probe::radiance(std::span<const Vec3> directions, std::span<Rgb> out) const {
+  constexpr std::size_t batch = 64;
+  std::array<Vec2, batch> places;
+  for (std::size_t begin = 0; begin < directions.size(); begin += batch) {
+    const std::size_t count = std::min(batch, directions.size() - begin);
+    with_mapping(m_mapping, [&](auto map) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec3& w = directions[begin + i];
+        map.image(w.x(), w.y(), w.z(), places[i].x(), places[i].y());
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i)
+      out[begin + i] = looked_up(places[i]);
+  }
+}
+
+Rgb Probe::looked_up(const Vec2& uv) const {
   if (m_lookup == Lookup::Bilinear)
     return interpolated(uv);
   const int x = std::min(static_cast<int>(uv.x() * static_cast<float>(m_width)), m_width - 1);

@@ -53,6 +53,13 @@ Rgb Light::radiance(const Vec3& w) const {
   return tree().value(p.x(), p.y()).max(0.0F);
 }
 
+void Light::radiance(std::span<const Vec3> directions, std::span<Rgb> out) const {
+  if (m_probe)
+    return m_probe->radiance(directions, out);
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    out[i] = radiance(directions[i]);
+}
+
 void Light::need_tree() {
   if (!m_map)
     m_map.emplace(probe::ProbeMaps(*m_probe, probe::MapOptions{}, m_source));
@@ -71,6 +78,13 @@ probe::LightSample Light::sample(const Vec2& u) const {
   d.u2 = u.y();
   descend_tree(wavelet::TreeDensity::of(tree()), d);
   return {wavelet::square_to_sphere(wavelet::end_point(d)), d.pdf / wavelet::sphere_area};
+}
+
+void Light::sample(std::span<const Vec2> points, std::span<probe::LightSample> out) const {
+  if (m_distribution)
+    return m_distribution->sample(points, out);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    out[i] = sample(points[i]);
 }
 
 float Light::pdf(const Vec3& w) const {

@@ -90,8 +90,10 @@ private:
       m_candidates.push_back(s.direction);
     m_reflectance.resize(pass.count);
     material.evaluate(point, m_candidates, m_reflectance);
+    m_radiance.resize(pass.count);
+    light.radiance(m_candidates, m_radiance);
     for (std::size_t i = 0; i < m_directions.size(); ++i)
-      add_sample(hit, m_directions[i], m_reflectance[i], sums);
+      add_sample(hit, m_directions[i], m_reflectance[i] * m_radiance[i], sums);
   }
 
   void prepare(const ShadingPoint& point, const Material& material, PixelSums& sums) {
@@ -106,16 +108,16 @@ private:
       sums.product = (m_integrator ? *m_integrator : *m_sampler).unshadowed().value_or(Rgb::Zero());
   }
 
-  void add_sample(const Hit& hit, const DirectionSample& s, const Rgb& reflectance,
+  /// @param reflected f_r L cos of the sample's direction
+  void add_sample(const Hit& hit, const DirectionSample& s, const Rgb& reflected,
                   PixelSums& sums) const {
-    if (!(s.pdf > 0) || !(reflectance > 0).any()) {
+    if (!(s.pdf > 0) || !(reflected > 0).any()) {
       sums.add(Rgb::Zero(), false, s.pdf);
       return;
     }
-    const Light& light = m_scene.light();
-    const Rgb weight = reflectance * light.radiance(s.direction) / s.pdf;
+    const Rgb weight = reflected / s.pdf;
     const bool visible =
-        (weight > 0).any() && !m_scene.shapes().occluded(leave(hit, light.to_world(s.direction)));
+        !m_scene.shapes().occluded(leave(hit, m_scene.light().to_world(s.direction)));
     sums.add(weight, visible, s.pdf);
   }
 
@@ -129,6 +131,7 @@ private:
   std::vector<DirectionSample> m_directions;
   std::vector<Vec3> m_candidates;
   std::vector<Rgb> m_reflectance;
+  std::vector<Rgb> m_radiance;
   TileCost m_cost;
 };
 

@@ -14,10 +14,10 @@ public:
   void sample(const PointSource& points, std::span<DirectionSample> out) override {
     m_points.resize(out.size());
     points.fill(0, m_points);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const probe::LightSample s = m_light.sample(m_points[i]);
-      out[i] = {s.direction, s.pdf};
-    }
+    m_samples.resize(out.size());
+    m_light.sample(m_points, m_samples);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = {m_samples[i].direction, m_samples[i].pdf};
   }
 
   float pdf(const Vec3& direction, std::size_t /*count*/) const override {
@@ -27,6 +27,7 @@ public:
 private:
   const Light& m_light;
   std::vector<Vec2> m_points;
+  std::vector<probe::LightSample> m_samples;
 };
 
 } // namespace

@@ -29,16 +29,14 @@ public:
 private:
   void sample_light(const PointSource& points, std::span<DirectionSample> out, std::size_t count) {
     m_points.resize(out.size());
-    m_light_pdfs.resize(out.size());
+    m_samples.resize(out.size());
     points.fill(0, m_points);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const probe::LightSample s = m_light.sample(m_points[i]);
-      out[i].direction = s.direction;
-      m_light_pdfs[i] = s.pdf;
-    }
+    m_light.sample(m_points, m_samples);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i].direction = m_samples[i].direction;
     m_lobe.pdfs(out);
     for (std::size_t i = 0; i < out.size(); ++i)
-      out[i].pdf = mean_density(m_light_pdfs[i], out[i].pdf, count);
+      out[i].pdf = mean_density(m_samples[i].pdf, out[i].pdf, count);
   }
 
   void sample_lobe(const PointSource& points, std::span<DirectionSample> out, std::size_t count) {
@@ -60,7 +58,7 @@ private:
   const Light& m_light;
   Lobe m_lobe;
   std::vector<Vec2> m_points;
-  std::vector<float> m_light_pdfs;
+  std::vector<probe::LightSample> m_samples;
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <probe/probe.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace haarlight::probe {
@@ -33,6 +34,9 @@ public:
   /// @param u uniform in [0, 1)²; its y picks the row, its x the column
   LightSample sample(const Vec2& u) const;
 
+  /// The same for many points at once, whose steps wait for memory side by side.
+  void sample(std::span<const Vec2> points, std::span<LightSample> out) const;
+
   /// Density of sample() in solid angle at a unit direction, sr⁻¹.
   float pdf(const Vec3& w) const;
 
@@ -57,6 +61,8 @@ private:
   static void accumulate(const std::vector<double>& weights, std::uint32_t* cdf);
   static void make_guide(const std::uint32_t* cdf, int parts, std::uint32_t* guide);
   static Step find(const std::uint32_t* cdf, const std::uint32_t* guide, int parts, float u);
+  Step find_row(float u) const;
+  Step find_column(const Step& row, float u) const;
   Place place_in_pixel(const Step& column, const Step& row) const;
   static Place place_at_rim(const PixelRectangle& pixel, float s, float t);
   float pixel_area(int x, int y, float u) const;

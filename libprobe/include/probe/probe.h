@@ -8,6 +8,7 @@
 #include <probe/image.h>
 #include <probe/mapping.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ public:
   /// Radiance from a direction, in the picture's own unit.
   /// @param w unit vector in world axes
   Rgb radiance(const Vec3& w) const;
+
+  /// The same for many directions at once, whose pixels are then fetched side by side.
+  void radiance(std::span<const Vec3> directions, std::span<Rgb> out) const;
 
   /// Radiance of one pixel, −1 ≤ x ≤ width and −1 ≤ y ≤ height: one step over the edge shows what
   /// lies beyond the seam. Black well outside a round map.
@@ -67,6 +71,7 @@ private:
   void fill_border();
   void fill_seam(int x, int y);
   void mask_outside();
+  Rgb looked_up(const Vec2& uv) const;
   Rgb interpolated(const Vec2& uv) const;
 
   Mapping m_mapping;

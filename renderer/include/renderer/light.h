@@ -20,6 +20,7 @@ public:
 
   /// Radiance from a unit direction.
   Rgb radiance(const Vec3& w) const;
+  void radiance(std::span<const Vec3> directions, std::span<Rgb> out) const;
 
   /// Makes what samplers use, if not there yet: the world-frame tree; the distribution to draw
   /// from.
@@ -34,6 +35,7 @@ public:
 
   /// Draws a direction in proportion to radiance; after need_distribution(). @return pdf in sr⁻¹
   probe::LightSample sample(const Vec2& u) const;
+  void sample(std::span<const Vec2> points, std::span<probe::LightSample> out) const;
   float pdf(const Vec3& w) const;
 
   Vec3 to_world(const Vec3& w) const { return m_turned ? Vec3(m_to_world * w) : w; }
