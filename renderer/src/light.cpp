@@ -70,21 +70,16 @@ void Light::need_distribution() {
     m_distribution.emplace(*m_probe);
 }
 
-probe::LightSample Light::sample(const Vec2& u) const {
-  if (m_distribution)
-    return m_distribution->sample(u);
-  wavelet::Descent d;
-  d.u1 = u.x();
-  d.u2 = u.y();
-  descend_tree(wavelet::TreeDensity::of(tree()), d);
-  return {wavelet::square_to_sphere(wavelet::end_point(d)), d.pdf / wavelet::sphere_area};
-}
-
 void Light::sample(std::span<const Vec2> points, std::span<probe::LightSample> out) const {
   if (m_distribution)
     return m_distribution->sample(points, out);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    out[i] = sample(points[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    wavelet::Descent d;
+    d.u1 = points[i].x();
+    d.u2 = points[i].y();
+    descend_tree(wavelet::TreeDensity::of(tree()), d);
+    out[i] = {wavelet::square_to_sphere(wavelet::end_point(d)), d.pdf / wavelet::sphere_area};
+  }
 }
 
 float Light::pdf(const Vec3& w) const {

@@ -6,6 +6,8 @@
 #include <wavelet/compress.h>
 #include <wavelet/tree_set.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -31,6 +33,16 @@ public:
 private:
   haarlight::wavelet::SetInfo m_info;
 };
+
+/// Between a map as a small reader gives it, a colour for each pixel, and another.
+template <class Pixels>
+float largest_difference(const Pixels& read, const haarlight::wavelet::Map& map) {
+  float worst = 0;
+  for (std::size_t i = 0; i < read.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      worst = std::max(worst, std::abs(read[i][c] - map.rgb[3 * i + c]));
+  return worst;
+}
 
 inline haarlight::wavelet::CompressOptions
 keep_all(haarlight::wavelet::CoefficientType type = haarlight::wavelet::CoefficientType::Half) {

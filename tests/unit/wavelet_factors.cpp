@@ -1,4 +1,4 @@
-#include "chi_square.h"
+#include "product_of.h"
 #include "random_map.h"
 
 #include <wavelet/compress.h>
@@ -189,12 +189,7 @@ TEST_CASE("any function with averages can be a factor") {
   const Eigen::Array3d expected = mean_of(dense);
   CHECK(((product.integral().cast<double>() - expected).abs() / expected).maxCoeff() < 1e-5);
 
-  std::mt19937 generator(1);
-  std::uniform_real_distribution<float> uniform(0, 1);
-  const auto result = chi_square(
-      200000, 32, 8,
-      [&](int) { return end_point(product.sample(uniform(generator), uniform(generator))); },
-      [&](Vec2 p) { return static_cast<double>(product.pdf(p.x(), p.y())); });
+  const auto result = chi_square_of(product, 8);
   CHECK(result.pdf_sum == Approx(1).margin(1e-3));
   CHECK(result.statistic < result.limit);
 }

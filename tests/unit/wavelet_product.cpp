@@ -1,4 +1,3 @@
-#include "chi_square.h"
 #include "product_of.h"
 #include "random_map.h"
 
@@ -103,12 +102,7 @@ TEST_CASE("products in one frame sample what their pdf says") {
   const Tree light = tree_of(random_map(64, 4), 0.2);
   const Tree lobe = tree_of(lobe_map(64, 0), 0.05);
   const ProductTree product = product_of(light.view(), lobe.view(), {1, true});
-  std::mt19937 generator(1);
-  std::uniform_real_distribution<float> uniform(0, 1);
-  const auto result = chi_square(
-      200000, 32, 8,
-      [&](int) { return end_point(product.sample(uniform(generator), uniform(generator))); },
-      [&](Vec2 p) { return static_cast<double>(product.pdf(p.x(), p.y())); });
+  const auto result = chi_square_of(product, 8);
   CHECK(result.pdf_sum == Approx(1).margin(1e-3));
   CHECK(result.statistic < result.limit);
 }
@@ -198,10 +192,7 @@ TEST_CASE("adaptive products sample what their pdf says, everywhere above the ho
     const Vec3 wo = (n + 0.9F * frame_about(n).t).normalized();
     const ProductTree& product = builder.build(reflectance_at(pyramid, n, wo, 0.5F), {});
     CHECK(product.leaf_count() > 64);
-    const auto result = chi_square(
-        200000, 32, 16,
-        [&](int) { return end_point(product.sample(uniform(generator), uniform(generator))); },
-        [&](Vec2 p) { return static_cast<double>(product.pdf(p.x(), p.y())); });
+    const auto result = chi_square_of(product, 16);
     CHECK(result.pdf_sum == Approx(1).margin(2e-3));
     CHECK(result.statistic < result.limit);
     for (int i = 0; i < 20000; ++i) {

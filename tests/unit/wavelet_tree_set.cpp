@@ -90,11 +90,10 @@ TEST_CASE("a set comes back from its file, and a reader written from FORMAT.md r
           const Tree tree = compress_map(source.make(column, row), options, report);
           const Map expected = tree.view().reconstruct(4);
           const Map mapped = set.tree(column, row).reconstruct(4);
-          const auto read = reader.map(static_cast<unsigned>(column), static_cast<unsigned>(row));
           CHECK(expected.rgb == mapped.rgb);
-          for (std::size_t i = 0; i < read.size(); ++i)
-            for (std::size_t c = 0; c < 3; ++c)
-              worst = std::max(worst, std::abs(read[i][c] - mapped.rgb[3 * i + c]));
+          worst = std::max(worst, largest_difference(reader.map(static_cast<unsigned>(column),
+                                                                static_cast<unsigned>(row)),
+                                                     mapped));
         }
       CHECK(worst < 1e-4F);
     }

@@ -8,6 +8,7 @@
 #include <probe/probe.h>
 
 #include <optional>
+#include <span>
 
 namespace haarlight::renderer {
 
@@ -20,6 +21,7 @@ public:
 
   /// Radiance from a unit direction.
   Rgb radiance(const Vec3& w) const;
+  /// The same from many, as many as `out`.
   void radiance(std::span<const Vec3> directions, std::span<Rgb> out) const;
 
   /// Makes what samplers use, if not there yet: the world-frame tree; the distribution to draw
@@ -33,8 +35,8 @@ public:
   /// The paper's table of rotated maps, if the scene names one.
   const TreeTable* rotated_table() const { return m_rotated ? &*m_rotated : nullptr; }
 
-  /// Draws a direction in proportion to radiance; after need_distribution(). @return pdf in sr⁻¹
-  probe::LightSample sample(const Vec2& u) const;
+  /// Draws directions in proportion to radiance, one for each point of [0, 1)², as many as `out`;
+  /// after need_distribution(). Densities in sr⁻¹.
   void sample(std::span<const Vec2> points, std::span<probe::LightSample> out) const;
   float pdf(const Vec3& w) const;
 
