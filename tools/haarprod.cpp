@@ -105,6 +105,9 @@ wavelet::MultiplyOptions common_form(const Options& options,
 
 int multiply(const tool::Tool& app, const Options& options) {
   const std::vector<tool::NamedTree> trees = tool::open_trees(options.trees);
+  if (const tool::NamedTree* tree = tool::out_of_frame(trees))
+    app.note(tree->label() +
+             ": is in another frame than the trees before it; all should share one");
   const std::vector<wavelet::TreeView> views = views_of(trees);
   const std::size_t split = static_cast<std::size_t>(options.factor.value_or(0));
   if (options.factor && split >= views.size())

@@ -34,6 +34,12 @@ expect 0 haarinfo --validate factors.haar
 expect 0 haarprod 'factors.haar[0,0]' 'factors.haar[1,0]' --integral --json
 number "$(field mean 2) > 0.99 * $mean && $(field mean 2) < 1.01 * $mean"
 
+# frames that do not belong together are told of
+expect 0 haarprod studio.haar sky.haar
+[ ! -s "$log/err" ] || fail "stderr: $(cat "$log/err")"
+expect 0 haarprod studio.haar 'table.haar[1,0]'
+says "another frame"
+
 # dropping makes it smaller
 expect 0 haarprod studio.haar sky.haar -o all.haar
 expect 0 haarprod studio.haar sky.haar -o some.haar --tolerance 0.05

@@ -45,4 +45,18 @@ std::vector<NamedTree> open_trees(const std::vector<std::string>& words) {
   return trees;
 }
 
+const NamedTree* out_of_frame(const std::vector<NamedTree>& trees) {
+  const NamedTree* first = nullptr;
+  for (const NamedTree& tree : trees) {
+    const wavelet::SetInfo& info = tree.set->info();
+    if (info.kind == wavelet::SetKind::Generic)
+      continue;
+    if (first == nullptr)
+      first = &tree;
+    if (first->set->info().world_frame != info.world_frame)
+      return &tree;
+  }
+  return nullptr;
+}
+
 } // namespace haarlight::tool

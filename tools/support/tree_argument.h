@@ -24,4 +24,8 @@ struct NamedTree {
 /// @throws UsageError for words of another form and for trees that a set has not, Error(Input)
 std::vector<NamedTree> open_trees(const std::vector<std::string>& words);
 
+/// The first tree that is in the world's frame while one before it is not, or the other way round;
+/// nullptr if none is. Generic trees, products among them, tell nothing of their frame.
+const NamedTree* out_of_frame(const std::vector<NamedTree>& trees);
+
 } // namespace haarlight::tool
