@@ -24,13 +24,11 @@ struct Options {
 };
 
 void declare_sampling(tool::Tool& app, RenderOptions& render) {
-  app.choice(render.sampler, "--sampler",
-             {{"product", SamplerKind::Product},
-              {"product-table", SamplerKind::ProductTable},
-              {"light", SamplerKind::Light},
-              {"brdf", SamplerKind::Brdf},
-              {"mis", SamplerKind::Mis}},
-             "Where light directions are drawn from");
+  std::vector<std::pair<std::string, SamplerKind>> kinds;
+  for (const SamplerTraits& sampler : samplers())
+    kinds.emplace_back(sampler.name, sampler.kind);
+  app.choice(render.sampler, "--sampler", kinds,
+             "Where light directions are drawn from; renderer/SAMPLERS.md tells of each");
   app.choice(render.estimator, "--estimator",
              {{"unbiased", Estimator::Unbiased},
               {"bidirectional", Estimator::Bidirectional},
@@ -43,10 +41,10 @@ void declare_sampling(tool::Tool& app, RenderOptions& render) {
   app.value(render.time_limit, "--time-limit",
             "Seconds to go on in passes for; the result then depends on the machine; 0 = one pass",
             0, 1e6);
-  app.value(render.product.variance_bound, "--product-variance",
+  app.value(render.sampling.product.variance_bound, "--product-variance",
             "Relative variance per sample at which products stop refining", 1e-5, 100);
-  app.value(render.product.max_leaves, "--product-leaves", "Leaves of a product at most", 64,
-            1 << 20);
+  app.value(render.sampling.product.max_leaves, "--product-leaves", "Leaves of a product at most",
+            64, 1 << 20);
 }
 
 void declare(tool::Tool& app, Options& options) {

@@ -12,34 +12,32 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
   m_materials.reserve(description.materials.size());
   for (const MaterialDescription& material : description.materials)
     m_materials.emplace_back(material, lookups.brdf);
-  if (needs_light_distribution(sampler))
+  if (needs(sampler, NeedsLightDistribution))
     m_light.need_distribution();
-  const bool product = sampler == SamplerKind::Product || unshadowed_product;
-  if (needs_light_tree(sampler) || product)
+  if (needs(sampler, NeedsLightTree) || unshadowed_product)
     m_light.need_tree();
-  if (needs_material_trees(sampler) || product)
+  if (needs(sampler, NeedsMaterialTrees) || unshadowed_product)
     for (Material& material : m_materials)
       material.need_trees();
-  if (sampler == SamplerKind::ProductTable) {
+  if (needs(sampler, NeedsTables)) {
     for (Material& material : m_materials)
       material.need_roll_table();
-    check_tables();
+    check_tables(traits(sampler).name);
   }
 }
 
-void LoadedScene::check_tables() const {
+void LoadedScene::check_tables(const std::string& sampler) const {
   const TreeTable* light = m_light.rotated_table();
   if (light == nullptr)
     throw_input_error(m_description.path,
-                      "light: names no \"table\", which product-table needs: a .haar "
-                      "made by probe2maps --orientations M");
+                      "light: names no \"table\", which " + sampler +
+                          " needs: a .haar made by probe2maps --orientations M");
   for (std::size_t i = 0; i < m_materials.size(); ++i) {
     const TreeTable* rolls = m_materials[i].roll_table();
     const std::string where = "materials." + m_materials[i].name();
     if (rolls == nullptr)
-      throw_input_error(m_description.path,
-                        where + ": names no \"table\", which product-table needs: a "
-                                ".haar made by brdf2maps --roll N");
+      throw_input_error(m_description.path, where + ": names no \"table\", which " + sampler +
+                                                " needs: a .haar made by brdf2maps --roll N");
   }
 }
 

@@ -37,17 +37,26 @@ struct TileCost {
   std::uint64_t leaves = 0;
 };
 
+/// What all threads' samplers come from.
+struct Factories {
+  Factories(const LoadedScene& scene, const RenderOptions& options)
+      : sampler(make_sampler_factory(options.sampler, scene, options.sampling)) {
+    if (needs_unshadowed(options.estimator) && !traits(options.sampler).follows_product)
+      integrator = make_sampler_factory(SamplerKind::Product, scene, options.sampling);
+  }
+
+  std::unique_ptr<SamplerFactory> sampler;
+  std::unique_ptr<SamplerFactory> integrator; ///< of L_ns, where the sampler has none
+};
+
 /// Renders tiles of one pass; one for each thread at a time.
 class TileRenderer {
 public:
   TileRenderer(const LoadedScene& scene, const RenderOptions& options, const Camera& camera,
-               Film& film, std::vector<PixelSums>& sums)
+               const Factories& factories, Film& film, std::vector<PixelSums>& sums)
       : m_scene(scene), m_options(options), m_camera(camera), m_film(film), m_sums(sums),
-        m_sampler(make_sampler(options.sampler, scene.light(), options.product)) {
-    if (needs_unshadowed(options.estimator) && options.sampler != SamplerKind::Product &&
-        options.sampler != SamplerKind::ProductTable)
-      m_integrator = make_sampler(SamplerKind::Product, scene.light(), options.product);
-  }
+        m_sampler(factories.sampler->make()),
+        m_integrator(factories.integrator ? factories.integrator->make() : nullptr) {}
 
   TileCost render(int x0, int y0, const Pass& pass) {
     const auto start = std::chrono::steady_clock::now();
@@ -91,7 +100,7 @@ private:
     m_reflectance.resize(pass.count);
     material.evaluate(point, m_candidates, m_reflectance);
     m_radiance.resize(pass.count);
-    light.radiance(m_candidates, m_radiance);
+    m_sampler->radiance(light, m_candidates, m_radiance);
     for (std::size_t i = 0; i < m_directions.size(); ++i)
       add_sample(hit, m_directions[i], m_reflectance[i] * m_radiance[i], sums);
   }
@@ -141,7 +150,7 @@ public:
   Rendering(const LoadedScene& scene, const RenderOptions& options, int width, int height,
             const RenderProgress& progress)
       : m_scene(scene), m_options(options), m_camera(scene.description().camera, width, height),
-        m_progress(progress),
+        m_factories(scene, options), m_progress(progress),
         m_sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     m_result.film = Film(width, height);
   }
@@ -170,7 +179,7 @@ private:
     std::vector<TileCost> costs(count);
     std::atomic<std::size_t> done = 0;
     parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
-      TileRenderer renderer(m_scene, m_options, m_camera, m_result.film, m_sums);
+      TileRenderer renderer(m_scene, m_options, m_camera, m_factories, m_result.film, m_sums);
       for (std::size_t i = begin; i < end; ++i) {
         const int tile = static_cast<int>(i);
         costs[i] = renderer.render(tile % tiles_across() * tile_side,
@@ -235,6 +244,7 @@ private:
   const LoadedScene& m_scene;
   const RenderOptions& m_options;
   Camera m_camera;
+  Factories m_factories;
   const RenderProgress& m_progress;
   std::vector<PixelSums> m_sums;
   std::uint64_t m_leaves = 0;
@@ -255,9 +265,7 @@ std::string estimator_name(Estimator estimator) {
 }
 
 std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator) {
-  const bool follows_product =
-      sampler == SamplerKind::Product || sampler == SamplerKind::ProductTable;
-  if (estimator == Estimator::Bidirectional && !follows_product)
+  if (estimator == Estimator::Bidirectional && !traits(sampler).follows_product)
     return "the bidirectional estimator needs directions that follow the product: --sampler "
            "product or "
            "product-table";

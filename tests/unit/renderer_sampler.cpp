@@ -1,249 +1,27 @@
-#include "chi_square.h"
-#include "temporary_folder.h"
-
-#include <renderer/loaded_scene.h>
-
-#include <brdf/analytic.h>
-#include <brdf/brdf_maps.h>
-#include <brdf/tabulate.h>
-#include <probe/probe_maps.h>
-#include <probe/read_probe.h>
-#include <probe/rgbe.h>
-#include <probe/synth.h>
-#include <wavelet/compress.h>
-#include <wavelet/sphere_map.h>
-
-#include <catch2/catch.hpp>
-
-#include <functional>
+#include "sampler_fixture.h"
 
 using namespace haarlight;
 using namespace haarlight::renderer;
 
 namespace {
 
-constexpr SamplerKind all_kinds[] = {SamplerKind::Product, SamplerKind::ProductTable,
-                                     SamplerKind::Light, SamplerKind::Brdf, SamplerKind::Mis};
-
-void write_haar(const std::string& path, const wavelet::MapSource& source) {
-  OutputFile file(path);
-  wavelet::CompressOptions options;
-  options.threshold.tolerance = default_tolerance(source.info(), options.threshold.criterion);
-  wavelet::compress_set(source, options, file);
-  file.commit();
-}
-
-/// Two glossy materials and two probes, small, with trees and tables, written once.
-class Fixture {
-public:
-  Fixture() {
-    material("rough", 0.35);
-    material("glossy", 0.12);
-    probe("studio", probe::SceneKind::Studio);
-    probe("spheres", probe::SceneKind::Spheres);
-  }
-
-  SceneDescription scene(const std::string& material, const std::string& probe) const {
-    SceneDescription scene;
-    scene.path = "test";
-    scene.light.probe = m_folder.file(probe + ".hdr");
-    scene.light.haar = m_folder.file(probe + ".haar");
-    scene.light.table = m_folder.file(probe + "-table.haar");
-    MaterialDescription m;
-    m.name = material;
-    m.brdf = m_folder.file(material + ".binary");
-    m.haar = m_folder.file(material + ".haar");
-    m.table = m_folder.file(material + "-table.haar");
-    scene.materials.push_back(m);
-    scene.objects.push_back({Sphere{}, {}, 0});
-    return scene;
-  }
-
-private:
-  void material(const std::string& name, double roughness) {
-    brdf::Ggx ggx;
-    ggx.roughness = roughness;
-    const std::string file = m_folder.file(name + ".binary");
-    brdf::write_merl(file, brdf::tabulate(ggx));
-    const brdf::MeasuredBrdf measured(file);
-    brdf::BrdfMapOptions options;
-    options.size = 128;
-    write_haar(m_folder.file(name + ".haar"), brdf::BrdfMaps(measured, options));
-    options.size = 32;
-    options.theta = 16;
-    options.roll = 16;
-    write_haar(m_folder.file(name + "-table.haar"), brdf::BrdfMaps(measured, options));
-  }
-
-  void probe(const std::string& name, probe::SceneKind kind) {
-    const std::string file = m_folder.file(name + ".hdr");
-    probe::write_rgbe(file, probe::draw_angular(*probe::make_scene(kind), 64));
-    const probe::LoadedProbe loaded = probe::read_probe(file, probe::Mapping::Angular);
-    probe::MapOptions options;
-    write_haar(m_folder.file(name + ".haar"), probe::ProbeMaps(loaded.probe, options));
-    options.size = 32;
-    options.orientations = 8;
-    write_haar(m_folder.file(name + "-table.haar"), probe::ProbeMaps(loaded.probe, options));
-  }
-
-  TemporaryFolder m_folder;
-};
-
-const Fixture& fixture() {
-  static const Fixture f;
-  return f;
-}
-
-std::vector<ShadingPoint> shading_points() {
-  std::vector<ShadingPoint> points;
-  const Vec3 normals[3] = {Vec3::UnitY(), Vec3(0.6F, 0, 0.8F), Vec3(-0.48F, -0.64F, -0.6F)};
-  for (const Vec3& n : normals)
-    for (const float tilt : {0.3F, 2.5F})
-      points.push_back(shading_point(n, (n + tilt * frame_about(n).b).normalized()));
-  return points;
-}
-
-/// Calls visit(direction, solid angle) for taps × taps points in every pixel of the probe.
-void for_each_point(const probe::Probe& probe, int taps,
-                    const std::function<void(const Vec3&, double)>& visit) {
-  const int side = probe.width() * taps;
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) {
-      const Vec2 uv((static_cast<float>(x) + 0.5F) / static_cast<float>(side),
-                    (static_cast<float>(y) + 0.5F) / static_cast<float>(side));
-      if (probe::in_map(probe.mapping(), uv))
-        visit(probe::image_to_direction(probe.mapping(), uv),
-              static_cast<double>(probe::solid_angle_density(probe.mapping(), uv)) /
-                  (static_cast<double>(side) * side));
-    }
-}
-
-probe::Probe probe_of(const SceneDescription& description) {
-  return probe::read_probe(description.light.probe, probe::Mapping::Angular).probe;
-}
-
-/// f L cos at a direction, luminance.
-double integrand(const LoadedScene& scene, const ShadingPoint& point, const Vec3& w) {
-  return static_cast<double>(
-      luminance(scene.materials()[0].evaluate(point, w) * scene.light().radiance(w)));
-}
-
-/// ∫ f L cos dω by brute force over the probe's pixels.
-double quadrature(const LoadedScene& scene, const ShadingPoint& point, const probe::Probe& probe) {
-  double sum = 0;
-  for_each_point(probe, 4,
-                 [&](const Vec3& w, double omega) { sum += omega * integrand(scene, point, w); });
-  return sum;
-}
-
-constexpr std::size_t sample_count = 4096;
-
-/// The standard error that sample_count independent samples have in truth: what the samples say of
-/// it themselves is far too small where a sampler rarely finds the integrand.
-double true_error(const LoadedScene& scene, const Sampler& sampler, const ShadingPoint& point,
-                  const probe::Probe& probe, double truth) {
-  double square = 0;
-  for_each_point(probe, 4, [&](const Vec3& w, double omega) {
-    const double value = integrand(scene, point, w);
-    if (value > 0)
-      square += omega * value * value / static_cast<double>(sampler.pdf(w, sample_count));
-  });
-  return std::sqrt(std::max(0.0, square - truth * truth) / sample_count);
-}
-
-struct Estimate {
-  double mean = 0;
-  double error = 0; ///< as the samples themselves have it
-};
-
-Estimate estimate_with(const LoadedScene& scene, Sampler& sampler, const ShadingPoint& point,
-                       std::uint32_t key) {
-  std::vector<DirectionSample> samples(sample_count);
-  sampler.sample({Points::Random, key, 0}, samples);
-  double sum = 0;
-  double square = 0;
-  for (const DirectionSample& s : samples)
-    if (s.pdf > 0) {
-      const double value = integrand(scene, point, s.direction) / static_cast<double>(s.pdf);
-      sum += value / sample_count;
-      square += value * value / sample_count;
-    }
-  return {sum, std::sqrt(std::max(0.0, square - sum * sum) / sample_count)};
-}
+constexpr SamplerKind basic_kinds[] = {SamplerKind::Product, SamplerKind::ProductTable,
+                                       SamplerKind::Light, SamplerKind::Brdf, SamplerKind::Mis};
 
 } // namespace
 
-TEST_CASE("every sampler with the unbiased estimator agrees with brute-force quadrature") {
-  int checks = 0;
-  int beyond_three = 0;
-  std::uint32_t key = 1;
-  for (const char* material : {"rough", "glossy"})
-    for (const char* probe : {"studio", "spheres"}) {
-      const SceneDescription description = fixture().scene(material, probe);
-      const probe::Probe source = probe_of(description);
-      for (const SamplerKind kind : all_kinds) {
-        const LoadedScene scene(description, {}, kind, false);
-        const auto sampler = make_sampler(kind, scene.light(), {});
-        for (const ShadingPoint& point : shading_points()) {
-          sampler->prepare(point, scene.materials()[0]);
-          const double truth = quadrature(scene, point, source);
-          const auto [mean, own_error] = estimate_with(scene, *sampler, point, key++);
-          // The grid misses slivers of the probe's pixels, the samples what they did not find.
-          const double error =
-              std::max(own_error, true_error(scene, *sampler, point, source, truth));
-          INFO(material << " under " << probe << " with " << sampler_name(kind) << ": " << mean
-                        << " ± " << error << ", not " << truth);
-          // Quadrature itself is good to about 0.1 %.
-          const double sigmas = (std::abs(mean - truth) - 1e-3 * truth) / error;
-          CHECK(sigmas < 4.5);
-          beyond_three += sigmas > 3 ? 1 : 0;
-          ++checks;
-        }
-      }
-    }
-  CHECK(checks == 120);
-  CHECK(beyond_three <=
-        3); // of 120 that stray by chance alone, 3 or fewer do with probability 0.9995
+TEST_CASE("the basic samplers with the unbiased estimator agree with brute-force quadrature") {
+  // Of 120 that stray by chance alone, 3 or fewer do with probability 0.9995.
+  check_unbiased(basic_kinds, 3);
 }
 
-TEST_CASE("every sampler draws what its pdf says") {
-  const LoadedScene* scene = nullptr;
-  std::uint32_t key = 1000;
-  for (const char* material : {"rough", "glossy"})
-    for (const SamplerKind kind : all_kinds) {
-      const LoadedScene loaded(fixture().scene(material, "studio"), {}, kind, false);
-      scene = &loaded;
-      const auto sampler = make_sampler(kind, scene->light(), {});
-      const ShadingPoint point = shading_points()[3];
-      sampler->prepare(point, scene->materials()[0]);
-      constexpr int count = 100000;
-      std::vector<DirectionSample> samples(count);
-      sampler->sample({Points::Random, key++, 0}, samples);
-      float worst = 0;
-      for (int i = 0; i < count; i += 97) {
-        const DirectionSample& s = samples[static_cast<std::size_t>(i)];
-        worst = std::max(worst, std::abs(sampler->pdf(s.direction, count) / s.pdf - 1));
-      }
-      const auto result = chi_square(
-          count, 32, 16,
-          [&](int i) {
-            return wavelet::sphere_to_square(samples[static_cast<std::size_t>(i)].direction);
-          },
-          [&](Vec2 p) {
-            return static_cast<double>(sampler->pdf(wavelet::square_to_sphere(p), count) *
-                                       wavelet::sphere_area);
-          });
-      INFO(material << " with " << sampler_name(kind) << ", worst pdf ratio " << worst);
-      CHECK(result.pdf_sum == Approx(1).margin(0.02));
-      CHECK(result.statistic < result.limit);
-    }
-}
+TEST_CASE("the basic samplers draw what their pdf says") { check_densities(basic_kinds); }
 
 TEST_CASE("the product's own integral is close to the truth") {
   for (const char* material : {"rough", "glossy"}) {
     const SceneDescription description = fixture().scene(material, "studio");
     const LoadedScene scene(description, {}, SamplerKind::Product, false);
-    const auto sampler = make_sampler(SamplerKind::Product, scene.light(), {});
+    const auto sampler = make_sampler_factory(SamplerKind::Product, scene, {})->make();
     const probe::Probe source = probe_of(description);
     double truth = 0;
     double product = 0;

@@ -4,7 +4,7 @@
 #include <renderer/camera.h>
 #include <renderer/light.h>
 #include <renderer/material.h>
-#include <renderer/sampler.h>
+#include <renderer/sampler_kind.h>
 #include <renderer/scene.h>
 #include <renderer/shapes.h>
 
@@ -41,7 +41,7 @@ public:
   const std::vector<Material>& materials() const { return m_materials; }
 
 private:
-  void check_tables() const;
+  void check_tables(const std::string& sampler) const;
 
   SceneDescription m_description;
   ShapeSet m_shapes;

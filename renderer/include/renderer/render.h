@@ -6,6 +6,7 @@
 
 #include <renderer/film.h>
 #include <renderer/loaded_scene.h>
+#include <renderer/sampler.h>
 
 #include <cstdint>
 #include <functional>
@@ -38,7 +39,7 @@ struct RenderOptions {
   int spp = 16; ///< light samples per pixel; with a time limit, of the first pass
   std::uint32_t seed = 0;
   double time_limit = 0; ///< seconds; 0 = none. Otherwise passes go on while another fits
-  wavelet::AdaptiveOptions product;
+  SamplerOptions sampling;
 };
 
 /// What rendering cost, and how well the sampler did.

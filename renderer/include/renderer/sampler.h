@@ -4,29 +4,20 @@
 #include <renderer/light.h>
 #include <renderer/material.h>
 #include <renderer/points.h>
+#include <renderer/sampler_kind.h>
 
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace haarlight::renderer {
 
-enum class SamplerKind {
-  Product,      ///< world-frame product of one light tree and the θ_r-only set, adaptive
-  ProductTable, ///< the paper's: product of the two stored trees of the nearest table entries
-  Light,        ///< the light alone, by cdf inversion (or its tree, if there is no probe)
-  Brdf,         ///< the reflectance alone, by descent in its tree
-  Mis ///< half of the samples from each of the two, balance heuristic (Veach and Guibas 1995)
-};
-
-/// As on the command line: product, product-table, light, brdf, mis.
-std::optional<SamplerKind> sampler_from_name(const std::string& name);
-std::string sampler_name(SamplerKind kind);
+class LoadedScene;
 
 /// A direction and the density it counts with. For several techniques at once this is their mean
-/// density, weighted by their numbers of samples, which makes f/pdf the balance heuristic.
+/// density, weighted by their numbers of samples, which makes f/pdf the balance heuristic; for
+/// resampled directions it is the reciprocal of the weight they count with.
 struct DirectionSample {
   Vec3 direction; ///< unit, in the light's frame
   float pdf = 0;  ///< sr⁻¹; 0 = no direction could be drawn, it contributes nothing
@@ -54,8 +45,16 @@ public:
   /// Draws out.size() directions for the point.
   virtual void sample(const PointSource& points, std::span<DirectionSample> out) = 0;
 
-  /// Density of the directions that sample() draws `count` at a time, at any direction, sr⁻¹.
+  /// Density of the directions that sample() draws `count` at a time, at any direction, sr⁻¹; of
+  /// resampled directions, of their candidates.
   virtual float pdf(const Vec3& direction, std::size_t count) const = 0;
+
+  /// The radiance that the directions of the last sample() stand for: the light's own, unless they
+  /// are lamps in place of regions.
+  virtual void radiance(const Light& light, std::span<const Vec3> directions,
+                        std::span<Rgb> out) const {
+    light.radiance(directions, out);
+  }
 
   /// The point's unshadowed radiance as this sampler's product knows it, L_ns of the paper's eq. 8;
   /// nothing for samplers that have no product.
@@ -65,14 +64,20 @@ public:
   virtual std::size_t leaves() const { return 0; }
 };
 
-/// @throws Error(Input) if the scene lacks what the sampler needs
-/// @param light after need_tree() or need_distribution() as needs_… say
-std::unique_ptr<Sampler> make_sampler(SamplerKind kind, const Light& light,
-                                      const wavelet::AdaptiveOptions& options);
+struct SamplerOptions {
+  wavelet::AdaptiveOptions product;
+};
 
-/// What a sampler wants made beforehand.
-bool needs_light_tree(SamplerKind kind);
-bool needs_light_distribution(SamplerKind kind);
-bool needs_material_trees(SamplerKind kind);
+/// What the samplers of all threads share, made once for a scene; makes each thread's own.
+class SamplerFactory {
+public:
+  virtual ~SamplerFactory() = default;
+  virtual std::unique_ptr<Sampler> make() const = 0;
+};
+
+/// @param scene loaded for this kind; must outlive the factory and its samplers
+/// @throws Error(Input) if the scene lacks what the sampler needs
+std::unique_ptr<SamplerFactory> make_sampler_factory(SamplerKind kind, const LoadedScene& scene,
+                                                     const SamplerOptions& options);
 
 } // namespace haarlight::renderer

@@ -2,8 +2,8 @@
 // reflectance; every one counts with the mean density of both (balance heuristic, Veach and Guibas
 // 1995).
 
+#include "kinds.h"
 #include "lobe_sampling.h"
-#include "sampler_kinds.h"
 
 namespace haarlight::renderer {
 namespace {
@@ -63,8 +63,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<Sampler> make_mis_sampler(const Light& light) {
-  return std::make_unique<MisSampler>(light);
+std::unique_ptr<SamplerFactory> make_mis_factory(const LoadedScene& scene,
+                                                 const SamplerOptions& /*options*/) {
+  return simple_factory<MisSampler>(std::cref(scene.light()));
 }
 
 } // namespace haarlight::renderer

@@ -1,8 +1,8 @@
 // The paper's product: the stored trees of the nearest entries of two tables, multiplied and
 // cached.
 
+#include "kinds.h"
 #include "product_tree_sampler.h"
-#include "sampler_kinds.h"
 
 #include <probe/probe_maps.h>
 #include <wavelet/error.h>
@@ -87,8 +87,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<Sampler> make_table_sampler(const Light& light) {
-  return std::make_unique<TableSampler>(light);
+std::unique_ptr<SamplerFactory> make_product_table_factory(const LoadedScene& scene,
+                                                           const SamplerOptions& /*options*/) {
+  return simple_factory<TableSampler>(std::cref(scene.light()));
 }
 
 } // namespace haarlight::renderer

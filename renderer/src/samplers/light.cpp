@@ -1,6 +1,6 @@
 // The light alone: pixels of the probe by cdf inversion.
 
-#include "sampler_kinds.h"
+#include "kinds.h"
 
 namespace haarlight::renderer {
 namespace {
@@ -32,8 +32,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<Sampler> make_light_sampler(const Light& light) {
-  return std::make_unique<LightSampler>(light);
+std::unique_ptr<SamplerFactory> make_light_factory(const LoadedScene& scene,
+                                                   const SamplerOptions& /*options*/) {
+  return simple_factory<LightSampler>(std::cref(scene.light()));
 }
 
 } // namespace haarlight::renderer

@@ -1,7 +1,7 @@
 // The reflectance alone.
 
+#include "kinds.h"
 #include "lobe_sampling.h"
-#include "sampler_kinds.h"
 
 namespace haarlight::renderer {
 namespace {
@@ -29,6 +29,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<Sampler> make_brdf_sampler() { return std::make_unique<BrdfSampler>(); }
+std::unique_ptr<SamplerFactory> make_brdf_factory(const LoadedScene& /*scene*/,
+                                                  const SamplerOptions& /*options*/) {
+  return simple_factory<BrdfSampler>();
+}
 
 } // namespace haarlight::renderer

@@ -1,7 +1,7 @@
 // The world-frame product: one light tree, and the reflectance's averages on the fly.
 
+#include "kinds.h"
 #include "product_tree_sampler.h"
-#include "sampler_kinds.h"
 
 #include <wavelet/adaptive_product.h>
 
@@ -24,9 +24,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<Sampler> make_product_sampler(const Light& light,
-                                              const wavelet::AdaptiveOptions& options) {
-  return std::make_unique<ProductSampler>(light, options);
+std::unique_ptr<SamplerFactory> make_product_factory(const LoadedScene& scene,
+                                                     const SamplerOptions& options) {
+  return simple_factory<ProductSampler>(std::cref(scene.light()), options.product);
 }
 
 } // namespace haarlight::renderer

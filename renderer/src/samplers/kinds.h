@@ -1,0 +1,38 @@
+#pragma once
+// The samplers behind make_sampler_factory(), one source file each.
+
+#include <renderer/loaded_scene.h>
+#include <renderer/sampler.h>
+
+#include <functional>
+
+namespace haarlight::renderer {
+
+/// A factory of samplers that share nothing but the scene.
+class SimpleFactory : public SamplerFactory {
+public:
+  using Make = std::function<std::unique_ptr<Sampler>()>;
+
+  explicit SimpleFactory(Make make) : m_make(std::move(make)) {}
+  std::unique_ptr<Sampler> make() const override { return m_make(); }
+
+private:
+  Make m_make;
+};
+
+/// Makes samplers of class S, each constructed from copies of the arguments; wrap references.
+template <class S, class... Arguments>
+std::unique_ptr<SamplerFactory> simple_factory(Arguments... arguments) {
+  return std::make_unique<SimpleFactory>([=] { return std::make_unique<S>(arguments...); });
+}
+
+using MakeFactory = std::unique_ptr<SamplerFactory>(const LoadedScene& scene,
+                                                    const SamplerOptions& options);
+
+MakeFactory make_light_factory;
+MakeFactory make_brdf_factory;
+MakeFactory make_mis_factory;
+MakeFactory make_product_factory;
+MakeFactory make_product_table_factory;
+
+} // namespace haarlight::renderer
