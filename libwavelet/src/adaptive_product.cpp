@@ -20,6 +20,9 @@ constexpr float reflectance_floor = 0.005F;
 /// Share of a square's error that splitting it is taken to get rid of.
 constexpr double gain_of_splitting = 0.6;
 
+/// A cut that followed other points until it had this part more leaves than at first is given up.
+constexpr std::size_t growth = 8;
+
 /// Half octaves between 1 and a ratio above it, 31 at most: the float's exponent and first digit.
 std::size_t half_octave(float ratio) {
   return std::min((std::bit_cast<std::uint32_t>(ratio) >> 22U) - (127U << 1U), 31U);
@@ -53,18 +56,56 @@ AdaptiveProduct::AdaptiveProduct(const TreeView& light) : m_light(light) {
   }
 }
 
-const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
-                                          const AdaptiveOptions& options) {
+void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
+                              const AdaptiveOptions& options) {
   m_reflectance = reflectance;
   m_limit = static_cast<std::size_t>(options.max_leaves);
   const Float4 mean = reflectance.pyramid->lookup(reflectance.entry0, 0, 0.5F, 0.5F);
   Float4& floor = m_product.m_rests[0].floor;
   floor = larger(mean * reflectance_floor, Float4{});
   floor[3] = 0;
+}
+
+const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
+                                          const AdaptiveOptions& options) {
+  turn_to(reflectance, options);
   start();
+  refine(options);
+  m_fresh_leaves = m_product.m_leaf_count;
+  m_product.sum_upwards(m_parent_slots);
+  return m_product;
+}
+
+const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance,
+                                           const AdaptiveOptions& options) {
+  if (m_reflectance.pyramid != reflectance.pyramid ||
+      m_product.m_leaf_count > m_fresh_leaves + m_fresh_leaves / growth)
+    return build(reflectance, options);
+  turn_to(reflectance, options);
+  weigh_again();
   refine(options);
   m_product.sum_upwards(m_parent_slots);
   return m_product;
+}
+
+/// Keeps the squares of the product at hand, with the weights that they have now.
+void AdaptiveProduct::weigh_again() {
+  std::array<float, 4 * detail::family_batch> density;
+  const std::span<ProductLeaf> all = m_product.m_leaves;
+  m_error = 0;
+  m_weight = 0;
+  for (std::size_t begin = 0; begin < all.size(); begin += density.size()) {
+    const auto batch = all.subspan(begin, std::min(density.size(), all.size() - begin));
+    detail::weigh_leaves(m_reflectance, m_product.m_rests[0].floor, batch, density.data(),
+                         m_errors.data() + begin);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      // Places not in use have a slot of old, but no light, and what stands there is summed anew.
+      const auto slot = static_cast<std::uint32_t>(batch[i].slot);
+      m_product.m_nodes[slot / 4].weights[slot & 3U] = density[i];
+      m_weight += static_cast<double>(density[i] * power_of_two(-2 * batch[i].level));
+      m_error += static_cast<double>(m_errors[begin + i]);
+    }
+  }
 }
 
 /// A node whose weights are yet to come.
@@ -169,8 +210,6 @@ void AdaptiveProduct::add(const Family& family, const detail::Quadrants& quadran
   m_product.m_leaf_count -= 4;
   double density = 0;
   for (unsigned q = 0; q < 4; ++q) {
-    if ((quadrants.visible >> q & 1U) == 0)
-      continue;
     ++m_product.m_leaf_count;
     const bool splits = quadrants.error[q] > threshold && m_product.m_leaf_count + 3 <= m_limit;
     const std::uint32_t place = splits ? 0 : new_leaf();

@@ -18,20 +18,28 @@ struct Lanes {
   Pyramid::Places places;
 };
 
+void set_square(const Pyramid& pyramid, int level, int x, int y, std::size_t i, Lanes& lanes) {
+  const float side = power_of_two(-level);
+  lanes.side[i] = side;
+  lanes.places.u[i] = (static_cast<float>(x) + 0.5F) * side;
+  lanes.places.v[i] = (static_cast<float>(y) + 0.5F) * side;
+  pyramid.set_level(lanes.places, i, level);
+}
+
 void gather(std::span<const Family> families, const Pyramid& pyramid, Lanes& lanes) {
   lanes.count = 4 * static_cast<int>(families.size());
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    const Family& family = families[f];
-    const float side = power_of_two(-family.level - 1);
-    for (unsigned q = 0; q < 4; ++q) {
-      const std::size_t i = 4 * f + q;
-      lanes.side[i] = side;
-      lanes.places.u[i] =
-          (static_cast<float>(2 * family.x + static_cast<int>(q & 1U)) + 0.5F) * side;
-      lanes.places.v[i] =
-          (static_cast<float>(2 * family.y + static_cast<int>(q >> 1U)) + 0.5F) * side;
-      pyramid.set_level(lanes.places, i, family.level + 1);
-    }
+  for (std::size_t f = 0; f < families.size(); ++f)
+    for (unsigned q = 0; q < 4; ++q)
+      set_square(pyramid, families[f].level + 1, 2 * families[f].x + static_cast<int>(q & 1U),
+                 2 * families[f].y + static_cast<int>(q >> 1U), 4 * f + q, lanes);
+}
+
+/// Leaves to lanes, up to a multiple of four with the last one again.
+void gather(std::span<const ProductLeaf> leaves, const Pyramid& pyramid, Lanes& lanes) {
+  lanes.count = (static_cast<int>(leaves.size()) + 3) / 4 * 4;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(lanes.count); ++i) {
+    const ProductLeaf& leaf = leaves[std::min(i, leaves.size() - 1)];
+    set_square(pyramid, leaf.level, leaf.x, leaf.y, i, lanes);
   }
 }
 
@@ -66,7 +74,8 @@ void look_up(const RotatedReflectance& reflectance, const Lanes& lanes, std::siz
 }
 
 /// Weights and errors, from averages of light and reflectance.
-void weigh(Float4 floor, int level, int finest_level, Quadrants& quadrants) {
+/// @param area of the squares that may be split further, else 0
+void weigh(Float4 floor, Float4 area, Quadrants& quadrants) {
   auto [lr, lg, lb, l0] = quadrants.light;
   auto [br, bg, bb, deviation] = quadrants.reflectance;
   transpose(lr, lg, lb, l0);
@@ -78,8 +87,11 @@ void weigh(Float4 floor, int level, int finest_level, Quadrants& quadrants) {
   const Int4 above = (Int4{1, 2, 4, 8} & static_cast<int>(quadrants.visible)) != 0;
   quadrants.density = select(above, larger(lr * r + lg * g + lb * b, zero), zero);
   const Float4 relative = deviation / (r + g + b + 1e-30F);
-  const float area = level < finest_level ? power_of_two(-2 * level) : 0.0F;
   quadrants.error = area * quadrants.density * relative * relative;
+}
+
+float splittable_area(const Pyramid& pyramid, int level) {
+  return level < pyramid.levels() ? power_of_two(-2 * level) : 0.0F;
 }
 
 } // namespace
@@ -102,7 +114,34 @@ HAARLIGHT_CPU_CLONES void weigh_families(const TreeView& light,
       out[f].light.fill(family.light);
       out[f].children.fill(no_node);
     }
-    weigh(floor, family.level + 1, pyramid.levels(), out[f]);
+    weigh(floor, Float4{} + splittable_area(pyramid, family.level + 1), out[f]);
+  }
+}
+
+HAARLIGHT_CPU_CLONES void weigh_leaves(const RotatedReflectance& reflectance, Float4 floor,
+                                       std::span<ProductLeaf> leaves, float* density,
+                                       float* error) {
+  const Pyramid& pyramid = *reflectance.pyramid;
+  Lanes lanes;
+  gather(leaves, pyramid, lanes);
+  rotate(reflectance.reflection, lanes);
+  pyramid.place(lanes.places, lanes.count);
+  Quadrants four;
+  for (std::size_t first = 0; first < leaves.size(); first += 4) {
+    const std::size_t count = std::min<std::size_t>(4, leaves.size() - first);
+    look_up(reflectance, lanes, first, four);
+    Float4 area = {};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const ProductLeaf& leaf = leaves[std::min(first + i, leaves.size() - 1)];
+      four.light[i] = leaf.light;
+      area[i] = splittable_area(pyramid, leaf.level);
+    }
+    weigh(floor, area, four);
+    for (std::size_t i = 0; i < count; ++i) {
+      leaves[first + i].reflectance = four.reflectance[i];
+      density[first + i] = four.density[i];
+      error[first + i] = four.error[i];
+    }
   }
 }
 

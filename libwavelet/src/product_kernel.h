@@ -27,4 +27,10 @@ inline constexpr std::size_t family_batch = 16;
 void weigh_families(const TreeView& light, const RotatedReflectance& reflectance, Float4 floor,
                     std::span<const Family> families, Quadrants* out);
 
+/// Weighs leaves under another reflectance: sets theirs, and what weigh_families() calls density
+/// and error.
+/// @param leaves at most 4 · family_batch
+void weigh_leaves(const RotatedReflectance& reflectance, Float4 floor,
+                  std::span<ProductLeaf> leaves, float* density, float* error);
+
 } // namespace haarlight::wavelet::detail

@@ -85,14 +85,7 @@ const Pyramid& pyramid(int sharpness) {
   return sharpness < 100 ? wide : sharpness < 1000 ? glossy : mirror;
 }
 
-RotatedReflectance reflectance_at(const Pyramid& lobes, std::mt19937& generator) {
-  std::normal_distribution<float> gauss;
-  Vec3 n(gauss(generator), gauss(generator), gauss(generator));
-  Vec3 wo(gauss(generator), gauss(generator), gauss(generator));
-  n.normalize();
-  wo.normalize();
-  if (n.dot(wo) < 0)
-    wo = -wo;
+RotatedReflectance reflectance_at(const Pyramid& lobes, const Vec3& n, const Vec3& wo) {
   RotatedReflectance r;
   r.pyramid = &lobes;
   r.reflection = reflection_frame(n, wo);
@@ -102,6 +95,17 @@ RotatedReflectance reflectance_at(const Pyramid& lobes, std::mt19937& generator)
   r.entry1 = r.entry0 + 1;
   r.blend = c - static_cast<float>(r.entry0);
   return r;
+}
+
+RotatedReflectance reflectance_anywhere(const Pyramid& lobes, std::mt19937& generator) {
+  std::normal_distribution<float> gauss;
+  Vec3 n(gauss(generator), gauss(generator), gauss(generator));
+  Vec3 wo(gauss(generator), gauss(generator), gauss(generator));
+  n.normalize();
+  wo.normalize();
+  if (n.dot(wo) < 0)
+    wo = -wo;
+  return reflectance_at(lobes, n, wo);
 }
 
 void draw_points(std::mt19937& generator, std::span<Vec2> points) {
@@ -116,7 +120,7 @@ void adaptive_product(benchmark::State& state) {
   std::mt19937 generator(1);
   std::size_t leaves = 0;
   for (auto _ : state)
-    leaves += product.build(reflectance_at(lobes, generator), {}).leaf_count();
+    leaves += product.build(reflectance_anywhere(lobes, generator), {}).leaf_count();
   state.counters["leaves"] =
       benchmark::Counter(static_cast<double>(leaves), benchmark::Counter::kAvgIterations);
   state.counters["time/leaf"] = benchmark::Counter(
@@ -124,11 +128,29 @@ void adaptive_product(benchmark::State& state) {
 }
 BENCHMARK(adaptive_product)->Arg(10)->Arg(300)->Arg(5000);
 
+/// The points of a row of pixels on a round object: the normal turns by 1/256 from one to the next.
+void following_product(benchmark::State& state) {
+  AdaptiveProduct product(light_tree().view());
+  const Pyramid& lobes = pyramid(static_cast<int>(state.range(0)));
+  std::size_t leaves = 0;
+  float turn = 0;
+  for (auto _ : state) {
+    turn = turn > 1.4F ? -1.4F : turn + 1.0F / 256;
+    const Vec3 n(std::sin(turn), 0, std::cos(turn));
+    leaves += product.follow(reflectance_at(lobes, n, Vec3::UnitZ()), {}).leaf_count();
+  }
+  state.counters["leaves"] =
+      benchmark::Counter(static_cast<double>(leaves), benchmark::Counter::kAvgIterations);
+  state.counters["time/leaf"] = benchmark::Counter(
+      static_cast<double>(leaves), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(following_product)->Arg(10)->Arg(300)->Arg(5000);
+
 void sample_64_of_product(benchmark::State& state) {
   AdaptiveProduct product(light_tree().view());
   std::mt19937 generator(1);
   const ProductTree& tree =
-      product.build(reflectance_at(pyramid(static_cast<int>(state.range(0))), generator), {});
+      product.build(reflectance_anywhere(pyramid(static_cast<int>(state.range(0))), generator), {});
   std::vector<Vec2> points(64);
   std::vector<Descent> descents(64);
   for (auto _ : state) {

@@ -46,7 +46,7 @@ struct RenderOptions {
 struct RenderStatistics {
   double seconds = 0;         ///< wall clock of all passes
   double prepare_seconds = 0; ///< of that, summed over threads: turning samplers to points
-  double thread_seconds = 0;  ///< all work, summed over threads
+  double thread_seconds = 0;  ///< processor time of all work, summed over threads
   std::uint64_t points = 0;   ///< prepared, over all passes
   std::uint64_t samples = 0;
   double mean_leaves = 0; ///< of products

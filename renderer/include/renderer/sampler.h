@@ -39,7 +39,10 @@ class Sampler {
 public:
   virtual ~Sampler() = default;
 
-  /// Turns to a point. What it refers to must live until the next call.
+  /// Forgets the points before: what comes depends on the points to come alone.
+  virtual void forget() {}
+
+  /// Turns to a point, best one near the last. What it refers to must live until the next call.
   virtual void prepare(const ShadingPoint& point, const Material& material) = 0;
 
   /// Draws out.size() directions for the point.

@@ -13,13 +13,19 @@ public:
   ProductSampler(const Light& light, const wavelet::AdaptiveOptions& options)
       : m_builder(light.tree()), m_options(options) {}
 
+  void forget() override { m_follows = false; }
+
   void prepare(const ShadingPoint& point, const Material& material) override {
-    m_product = &m_builder.build(material.reflectance(point), m_options);
+    const wavelet::RotatedReflectance reflectance = material.reflectance(point);
+    m_product = m_follows ? &m_builder.follow(reflectance, m_options)
+                          : &m_builder.build(reflectance, m_options);
+    m_follows = true;
   }
 
 private:
   wavelet::AdaptiveProduct m_builder;
   wavelet::AdaptiveOptions m_options;
+  bool m_follows = false;
 };
 
 } // namespace
