@@ -42,7 +42,9 @@ void declare_sampling(tool::Tool& app, RenderOptions& render) {
             "Seconds to go on in passes for; the result then depends on the machine; 0 = one pass",
             0, 1e6);
   app.value(render.sampling.product.variance_bound, "--product-variance",
-            "Relative variance per sample at which products stop refining", 1e-5, 100);
+            "Relative variance per sample at which products stop refining; unless given, 0.005 "
+            "for bidirectional and ratio",
+            1e-5, 100);
   app.value(render.sampling.product.max_leaves, "--product-leaves", "Leaves of a product at most",
             64, 1 << 20);
 }
@@ -68,11 +70,14 @@ void declare(tool::Tool& app, Options& options) {
 void require_writable(const std::string& path) { const OutputFile trial(path); }
 
 /// Refuses contradictions and unwritable outputs before any work is done.
-void check(Options& options) {
+void check(const tool::Tool& app, Options& options) {
   if (const auto problem = problem_of(options.render.sampler, options.render.estimator))
     throw tool::UsageError(*problem);
   if (options.seed > 0xFFFFFFFFU)
     throw tool::UsageError("--seed: must be below 2^32");
+  if (!app.given("--product-variance"))
+    options.render.sampling.product.variance_bound =
+        default_variance_bound(options.render.estimator);
   options.render.seed = static_cast<std::uint32_t>(options.seed);
   require_writable(options.output);
   if (!options.png.empty())
@@ -80,7 +85,7 @@ void check(Options& options) {
 }
 
 int render_scene(const tool::Tool& app, Options& options) {
-  check(options);
+  check(app, options);
   SceneDescription description = load_scene(options.scene);
   if (!options.size.empty())
     tool::set_film_size(options.size, description);

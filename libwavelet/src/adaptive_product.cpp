@@ -84,8 +84,16 @@ const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance
   turn_to(reflectance, options);
   weigh_again();
   refine(options);
+  // With no leaves to spare, the old squares would stand in the way of those that matter now.
+  if (excess_error(options) > 0 && m_product.m_leaf_count + 3 > m_limit)
+    return build(reflectance, options);
   m_product.sum_upwards(m_parent_slots);
   return m_product;
+}
+
+/// Error beyond the bound, by estimate; negative within.
+double AdaptiveProduct::excess_error(const AdaptiveOptions& options) const {
+  return m_error - static_cast<double>(options.variance_bound) * m_weight;
 }
 
 /// Keeps the squares of the product at hand, with the weights that they have now.
@@ -145,7 +153,7 @@ void AdaptiveProduct::start() {
 void AdaptiveProduct::refine(const AdaptiveOptions& options) {
   std::size_t before = 0;
   while (m_product.m_leaf_count != before) {
-    const double excess = m_error - static_cast<double>(options.variance_bound) * m_weight;
+    const double excess = excess_error(options);
     if (!(excess > 0))
       return;
     before = m_product.m_leaf_count;

@@ -237,6 +237,24 @@ TEST_CASE("products that follow others sample and integrate as those built afres
   CHECK(kept > 10);
 }
 
+TEST_CASE("products that may not grow follow to far points all the same") {
+  const Tree light = tree_of(random_map(256, 9), 0.1);
+  const Tree lobe = tree_of(lobe_map(256, 0), 0.01);
+  const TreeView views[2] = {lobe.view(), lobe.view()};
+  const Pyramid pyramid(views);
+  AdaptiveProduct following(light.view());
+  AdaptiveProduct fresh(light.view());
+  const AdaptiveOptions scarce = {.variance_bound = 1e-4F, .max_leaves = 300};
+  for (int step = 0; step < 12; ++step) {
+    const float turn = 0.5F * static_cast<float>(step);
+    const Vec3 n(std::cos(turn), std::sin(turn), 0);
+    const auto reflectance = reflectance_at(pyramid, n, n, 0);
+    const Rgb kept = following.follow(reflectance, scarce).integral();
+    CHECK(luminance(kept) ==
+          Approx(luminance(fresh.build(reflectance, scarce).integral())).epsilon(0.02));
+  }
+}
+
 TEST_CASE("a tighter bound makes more leaves and a density closer to the product") {
   const Map light = random_map(256, 10);
   const Tree light_tree = tree_of(light, 0);

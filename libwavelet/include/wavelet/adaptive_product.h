@@ -66,6 +66,7 @@ private:
   void start();
   void weigh_again();
   void refine(const AdaptiveOptions& options);
+  double excess_error(const AdaptiveOptions& options) const;
   void split_above(float threshold);
   void expand_all(float threshold);
   void add(const Family& family, const detail::Quadrants& quadrants, float threshold);
