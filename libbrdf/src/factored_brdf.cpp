@@ -16,12 +16,28 @@ namespace {
 constexpr float below_one = 0x1.fffffep-1F;
 constexpr int taps = 2; ///< along either side of a cell
 
-/// Chooses a cell by its cdf, and what is left of u there.
-std::size_t choose_cell(std::span<const float> cdf, float& u) {
-  const auto above = std::upper_bound(cdf.begin() + 1, cdf.end() - 1, u);
-  const auto cell = static_cast<std::size_t>(above - cdf.begin()) - 1;
-  u = std::min((u - cdf[cell]) / (cdf[cell + 1] - cdf[cell]), below_one);
-  return cell;
+constexpr std::size_t guide_parts = 256; ///< of a cdf, with the cell each begins in
+
+/// Appends the cells in which equal parts of a cdf begin.
+void append_guide(std::span<const float> cdf, std::vector<std::uint16_t>& guide) {
+  std::size_t cell = 0;
+  for (std::size_t part = 0; part < guide_parts; ++part) {
+    while (cdf[cell + 1] <= static_cast<float>(part) / guide_parts)
+      ++cell;
+    guide.push_back(static_cast<std::uint16_t>(cell));
+  }
+}
+
+/// From 0 to 1, one number more than there are cells. @param cells sum to one
+std::vector<float> cumulative(std::span<const float> cells) {
+  std::vector<float> cdf = {0};
+  double sum = 0;
+  for (const float value : cells) {
+    sum += static_cast<double>(value);
+    cdf.push_back(std::min(static_cast<float>(sum), 1.0F));
+  }
+  cdf.back() = 1;
+  return cdf;
 }
 
 /// Half vector of (1 − cos θ_h)/2 and φ_h.
@@ -107,23 +123,28 @@ std::vector<float> FactoredBrdf::row_of(const Evaluate& evaluate, int view) cons
 }
 
 FactoredBrdf::Densities FactoredBrdf::densities(std::span<const std::vector<float>> terms,
-                                                std::span<const float> unit) {
+                                                std::span<const float> measures) {
   Densities result;
-  result.density.resize(unit.size() * max_terms);
+  result.cells = measures.size();
+  result.density.resize(result.cells * max_terms);
   for (std::size_t l = 0; l < terms.size(); ++l) {
-    const std::size_t begin = result.cdf.size();
-    double sum = 0;
-    result.cdf.push_back(0);
-    for (const float value : terms[l]) {
-      sum += static_cast<double>(value);
-      result.cdf.push_back(std::min(static_cast<float>(sum), 1.0F));
-    }
-    result.cdf.back() = 1;
-    for (std::size_t i = 0; i < unit.size(); ++i)
-      result.density[i * max_terms + l] =
-          (result.cdf[begin + i + 1] - result.cdf[begin + i]) / unit[i];
+    const std::vector<float> cdf = cumulative(terms[l]);
+    append_guide(cdf, result.guide);
+    for (std::size_t i = 0; i < result.cells; ++i)
+      result.density[i * max_terms + l] = (cdf[i + 1] - cdf[i]) / measures[i];
+    result.cdf.insert(result.cdf.end(), cdf.begin(), cdf.end());
   }
   return result;
+}
+
+std::size_t FactoredBrdf::Densities::choose(std::size_t term, float& u) const {
+  const float* c = &cdf[term * (cells + 1)];
+  const auto part = static_cast<std::size_t>(u * guide_parts);
+  std::size_t cell = guide[term * guide_parts + part];
+  while (c[cell + 1] <= u)
+    ++cell;
+  u = std::min((u - c[cell]) / (c[cell + 1] - c[cell]), below_one);
+  return cell;
 }
 
 void FactoredBrdf::factor(const Evaluate& evaluate) {
@@ -141,23 +162,28 @@ void FactoredBrdf::factor(const Evaluate& evaluate) {
   std::vector<std::vector<float>> u;
   std::vector<std::vector<float>> v;
   for (std::size_t j = 0; j < outer; ++j) {
-    NonnegativeFactors parts =
+    const NonnegativeFactors parts =
         factorise(image_of(column(factors.g, j), theta, phi), inner, m_options.iterations);
     for (std::size_t k = 0; k < inner; ++k) {
       u.push_back(column(parts.g, k));
       v.push_back(column(parts.f, k));
       const float share = std::accumulate(v.back().begin(), v.back().end(), 0.0F);
       for (std::size_t r = 0; r < views; ++r)
-        m_weights[r * max_terms + j * inner + k] = factors.f.row(r)[j] * share;
+        m_weights[r * max_terms + u.size() - 1] = factors.f.row(r)[j] * share;
       normalise(u.back());
       normalise(v.back());
     }
   }
-  std::vector<float> rings(theta);
-  for (std::size_t i = 0; i < theta; ++i)
-    rings[i] = 4 * pi * (edge(i + 1) - edge(i)); // steradian
-  m_theta = densities(u, rings);
+  m_theta = densities(u, ring_areas());
   m_phi = densities(v, std::vector<float>(phi, 1.0F / static_cast<float>(phi)));
+}
+
+/// Steradian of each cell of θ_h.
+std::vector<float> FactoredBrdf::ring_areas() const {
+  std::vector<float> areas(static_cast<std::size_t>(m_options.theta));
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    areas[i] = 4 * pi * (edge(i + 1) - edge(i));
+  return areas;
 }
 
 FactoredBrdf::View FactoredBrdf::view(const Vec3& local_wo) const {
@@ -184,23 +210,26 @@ FactoredBrdf::Sample FactoredBrdf::sample(const View& view, const Vec2& u) const
     return {wi, pdf(view, wi)};
   }
   float rest = std::min((u.x() - cosine_share) / (1 - cosine_share), below_one);
-  std::size_t term = 0;
-  const auto last = static_cast<std::size_t>(m_options.outer * m_options.inner) - 1;
-  while (term < last && rest >= view.weights[term])
-    rest -= view.weights[term++];
-  rest = std::min(rest / std::max(view.weights[term], 1e-20F), below_one);
-  const auto theta = static_cast<std::size_t>(m_options.theta);
-  const auto phi = static_cast<std::size_t>(m_options.phi);
+  const std::size_t term = choose_term(view, rest);
   const float turn = 2 * u.y() - 1;
-  float around = std::abs(turn);
-  Cell cell;
-  cell.theta = choose_cell(std::span(m_theta.cdf).subspan(term * (theta + 1), theta + 1), rest);
-  cell.phi = choose_cell(std::span(m_phi.cdf).subspan(term * (phi + 1), phi + 1), around);
+  float around = std::min(std::abs(turn), below_one);
+  const Cell cell = {m_theta.choose(term, rest), m_phi.choose(term, around)};
   const float s = edge(cell.theta) + rest * (edge(cell.theta + 1) - edge(cell.theta));
-  const float angle = (static_cast<float>(cell.phi) + around) * pi / static_cast<float>(phi);
+  const float angle =
+      (static_cast<float>(cell.phi) + around) * pi / static_cast<float>(m_phi.cells);
   const Vec3 h = half_vector(s, turn < 0 ? -angle : angle);
   const Vec3 wi = mirror(view.wo, h);
   return {wi, density(view, wi, cell, std::abs(view.wo.dot(h)))};
+}
+
+/// Sets u to what is left of it in the term.
+std::size_t FactoredBrdf::choose_term(const View& view, float& u) const {
+  const auto last = static_cast<std::size_t>(m_options.outer * m_options.inner) - 1;
+  std::size_t term = 0;
+  while (term < last && u >= view.weights[term])
+    u -= view.weights[term++];
+  u = std::min(u / std::max(view.weights[term], 1e-20F), below_one);
+  return term;
 }
 
 FactoredBrdf::Cell FactoredBrdf::cell_of(const Vec3& h) const {

@@ -19,6 +19,7 @@
 #include <wavelet/geometry.h>
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -29,8 +30,8 @@ struct FactorOptions {
   int views = 32;      ///< cells of θ_o
   int theta = 90;      ///< cells of θ_h
   int phi = 16;        ///< cells of |φ_h|
-  int outer = 4;       ///< J
-  int inner = 2;       ///< K; J·K at most FactoredBrdf::max_terms
+  int outer = 5;       ///< J
+  int inner = 3;       ///< K; J·K at most FactoredBrdf::max_terms
   int iterations = 60; ///< of each factorisation
 };
 
@@ -76,15 +77,22 @@ private:
 
   /// One-dimensional densities of all terms.
   struct Densities {
-    std::vector<float> cdf;     ///< by term, cells + 1 each
-    std::vector<float> density; ///< by cell, max_terms each: of a cell in units of `unit`
+    std::size_t cells = 0;
+    std::vector<std::uint16_t> guide; ///< by term, the cells in which equal parts of the cdf begin
+    std::vector<float> cdf;           ///< by term, cells + 1 each
+    std::vector<float> density;       ///< by cell, max_terms each: probability over measure
+
+    /// Chooses a cell of a term, and sets u to what is left of it there.
+    std::size_t choose(std::size_t term, float& u) const;
   };
 
   static Densities densities(std::span<const std::vector<float>> terms,
-                             std::span<const float> unit);
+                             std::span<const float> measures);
   void factor(const Evaluate& evaluate);
   std::vector<float> row_of(const Evaluate& evaluate, int view) const;
   float edge(std::size_t theta_cell) const;
+  std::vector<float> ring_areas() const;
+  std::size_t choose_term(const View& view, float& u) const;
   Cell cell_of(const Vec3& h) const;
   float half_vector_density(const View& view, const Cell& cell) const;
   float density(const View& view, const Vec3& wi, const Cell& cell, float cos_d) const;
