@@ -16,7 +16,7 @@ constexpr float smallest_share = 0.1F;
 
 Vec3 spherical(double cosine, double u) {
   const SineCosine phi = sine_cosine(2 * pi * u);
-  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  const double sine = std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
   return Vec3(static_cast<float>(sine * phi.cosine), static_cast<float>(sine * phi.sine),
               static_cast<float>(cosine))
       .normalized();
@@ -24,14 +24,8 @@ Vec3 spherical(double cosine, double u) {
 
 /// By (n + 1) / 2π cos^n θ about z.
 Vec3 cosine_power_direction(double n, const Vec2& u) {
-  const double logarithm_of_cosine = logarithm(1 - static_cast<double>(u.x())) / (n + 1);
-  const double cosine = exponential(logarithm_of_cosine);
-  // 1 − cos² would lose what a narrow lobe is about.
-  const double sine = std::sqrt(std::max(0.0, 1 - exponential(2 * logarithm_of_cosine)));
-  const SineCosine phi = sine_cosine(2 * pi * static_cast<double>(u.y()));
-  return Vec3(static_cast<float>(sine * phi.cosine), static_cast<float>(sine * phi.sine),
-              static_cast<float>(cosine))
-      .normalized();
+  return spherical(exponential(logarithm(1 - static_cast<double>(u.x())) / (n + 1)),
+                   static_cast<double>(u.y()));
 }
 
 Vec3 cosine_direction(const Vec2& u) {
