@@ -3,7 +3,6 @@
 #include "analytic_terms.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace haarlight::brdf {
@@ -161,9 +160,7 @@ float diffuse_share(const M& model, const Vec3& wo) {
 AnalyticSampling::AnalyticSampling(const AnalyticBrdf& model, const Vec3& local_wo)
     : m_model(&model), m_wo(local_wo),
       m_diffuse_share(
-          std::visit([&](const auto& m) { return diffuse_share(m, local_wo); }, model)) {
-  assert(local_wo.z() > 0);
-}
+          std::visit([&](const auto& m) { return diffuse_share(m, local_wo); }, model)) {}
 
 Vec3 AnalyticSampling::sample(const Vec2& u) const {
   if (u.x() < m_diffuse_share)

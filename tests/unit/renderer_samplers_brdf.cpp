@@ -81,6 +81,8 @@ TEST_CASE("analytic materials are sampled without bias, with the density stated"
     check_density(scene_of(named), SamplerKind::Brdf, named.name, key++);
   }
   CHECK(strays <= 3);
+  const LoadedScene scene(scene_of(models()[0]), {}, SamplerKind::Brdf, false);
+  CHECK(scene.materials()[0].pyramid_bytes() == 0); // no trees are made for nothing
 }
 
 TEST_CASE("every material can be factorised") {

@@ -22,7 +22,7 @@ class AnalyticSampling {
 public:
   AnalyticSampling() = default;
 
-  /// @param local_wo unit, above the horizon
+  /// @param local_wo unit, above the horizon but for rounding
   AnalyticSampling(const AnalyticBrdf& model, const Vec3& local_wo);
 
   /// The direction ω_i, a unit vector, for a point of [0, 1)². It may lie below the horizon, where

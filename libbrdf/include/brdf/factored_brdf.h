@@ -60,7 +60,7 @@ public:
     float pdf = 0;  ///< sr⁻¹
   };
 
-  /// @param local_wo unit, above the horizon, y = 0
+  /// @param local_wo unit, above the horizon but for rounding, y = 0
   View view(const Vec3& local_wo) const;
 
   /// Draws ω_i for a point of [0, 1)².
