@@ -1,6 +1,6 @@
 #include <brdf/analytic.h>
 
-#include "elementary.h"
+#include "analytic_terms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,27 +10,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-double fifth_power(double x) { return x * x * x * x * x; }
-
-/// Schlick 1994.
-Rgb fresnel(const Rgb& at_normal, double cosine) {
-  const auto rise = static_cast<float>(fifth_power(1 - cosine));
-  return at_normal + (1.0F - at_normal) * rise;
-}
-
 Rgb lambert_plus(const Rgb& diffuse, const Rgb& specular, double lobe) {
   return diffuse * static_cast<float>(1 / pi) + specular * static_cast<float>(lobe);
-}
-
-/// 2 / (1 + sqrt(1 + α² tan²θ)), Walter's eq. 34, divided by cos θ.
-double ggx_masking_over_cosine(double cosine, double alpha2) {
-  return 2 / (cosine + std::sqrt(cosine * cosine + alpha2 * (1 - cosine * cosine)));
-}
-
-/// cos^n θ_h without losing the difference from one of a cosine next to it.
-double cosine_power(const Angles& a, double n) {
-  return a.cos_h > 0.7 ? exponential(0.5 * n * logarithm(1 - a.sin_h * a.sin_h))
-                       : power(a.cos_h, n);
 }
 
 } // namespace
@@ -46,9 +27,8 @@ Angles angles_of(const Vec3& local_wi, const Vec3& local_wo) {
 
 Rgb Ggx::evaluate(const Angles& a) const {
   const double alpha2 = roughness * roughness;
-  const double spread = a.sin_h * a.sin_h + alpha2 * a.cos_h * a.cos_h;
-  const double distribution = alpha2 / (pi * spread * spread);
-  const double lobe = 0.25 * distribution * ggx_masking_over_cosine(a.cos_i, alpha2) *
+  const double lobe = 0.25 * ggx_distribution(a, alpha2) *
+                      ggx_masking_over_cosine(a.cos_i, alpha2) *
                       ggx_masking_over_cosine(a.cos_o, alpha2);
   return lambert_plus(diffuse, fresnel(specular, a.cos_d), lobe);
 }

@@ -19,6 +19,9 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
   if (needs(sampler, NeedsMaterialTrees) || unshadowed_product)
     for (Material& material : m_materials)
       material.need_trees();
+  if (needs(sampler, NeedsLobes))
+    for (Material& material : m_materials)
+      material.need_lobe();
   if (needs(sampler, NeedsTables)) {
     for (Material& material : m_materials)
       material.need_roll_table();

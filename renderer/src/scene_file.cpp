@@ -1,5 +1,6 @@
 #include <renderer/scene_file.h>
 
+#include "scene_material.h"
 #include "scene_object.h"
 
 #include <renderer/film.h>
@@ -99,16 +100,12 @@ LightDescription read_light(const SceneNode& node, const Folder& folder) {
   return light;
 }
 
-Rgb read_albedo(const SceneNode& node) {
-  Rgb albedo = node.vector().array();
-  if ((albedo < 0).any() || (albedo > 1).any())
-    node.fail("must hold albedos between 0 and 1");
-  return albedo;
-}
-
 MaterialDescription read_material(const SceneNode& node, const std::string& name,
                                   const Folder& folder) {
-  node.allow({"brdf", "haar", "table", "lambert"});
+  Names keys = {"brdf", "haar", "table", "lambert"};
+  const Names models = model_names();
+  keys.insert(keys.end(), models.begin(), models.end());
+  node.allow(keys);
   MaterialDescription material;
   material.name = name;
   material.brdf = folder.file(node, "brdf");
@@ -116,10 +113,13 @@ MaterialDescription read_material(const SceneNode& node, const std::string& name
   material.table = folder.file(node, "table");
   if (const auto lambert = node.find("lambert"))
     material.lambert = read_albedo(*lambert);
+  material.model = read_model(node);
   if (node.keys().empty())
-    node.fail("needs at least one of the keys brdf, haar, table, or lambert");
-  if (material.lambert && node.keys().size() > 1)
-    node.fail("lambert stands alone, without brdf, haar or table");
+    node.fail("needs at least one of the keys brdf, haar, table, or lambert, or a model: " +
+              joined(models));
+  if ((material.lambert || material.model) && node.keys().size() > 1)
+    node.fail(std::string(material.lambert ? "lambert" : "a model") +
+              " stands alone, without brdf, haar, table or another model");
   return material;
 }
 

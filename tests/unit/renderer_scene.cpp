@@ -172,6 +172,27 @@ TEST_CASE("an empty stage is a scene", "[scene]") {
             .objects.empty());
 }
 
+TEST_CASE("analytic models are materials", "[scene]") {
+  const auto model = [](const std::string& text) {
+    return *load(replaced(plain_scene, R"("lambert": [0.5, 0.25, 1])", text)).materials[1].model;
+  };
+  const auto ggx = std::get<brdf::Ggx>(
+      model(R"("ggx": {"diffuse": [0.1, 0.2, 0.3], "specular": [0, 0.5, 1], "roughness": 0.001})"));
+  CHECK((ggx.diffuse == Rgb(0.1F, 0.2F, 0.3F)).all());
+  CHECK((ggx.specular == Rgb(0, 0.5F, 1)).all());
+  CHECK(ggx.roughness == 0.001);
+  CHECK(std::get<brdf::BlinnPhong>(model(R"("blinn-phong": {"exponent": 7})")).exponent == 7);
+  CHECK(std::get<brdf::Ward>(model(R"("ward": {"roughness": 1})")).roughness == 1);
+  CHECK(std::get<brdf::AshikhminShirley>(model(R"("ashikhmin-shirley": {"exponent": 1e6})"))
+            .exponent == 1e6);
+  const auto lafortune =
+      std::get<brdf::Lafortune>(model(R"("lafortune": {"lobe_xy": 0.5, "lobe_z": -2})"));
+  CHECK(lafortune.c_xy == 0.5);
+  CHECK(lafortune.c_z == -2);
+  CHECK(lafortune.exponent == brdf::Lafortune().exponent);
+  CHECK_FALSE(load(plain_scene).materials[1].model);
+}
+
 TEST_CASE("text that is no JSON is refused with the byte", "[scene]") {
   const SceneOnDisk disk(R"({"film": {"width": 256,, "height": 4}})");
   try {
@@ -258,7 +279,34 @@ TEST_CASE("each mistake is named with its place and the remedy", "[scene]") {
       {R"("lambert": [0.5, 0.25, 1])", R"("lambert": [0.5, 0.25, 1], "brdf": "a")",
        R"(materials["floor"]: lambert stands alone)"},
       {R"([0.5, 0.25, 1])", R"([0.5, 1.25, 1])",
-       R"(materials["floor"].lambert: must hold albedos between 0 and 1)"}};
+       R"(materials["floor"].lambert: must hold albedos between 0 and 1)"},
+      {R"("lambert": [0.5, 0.25, 1])", "",
+       R"(materials["floor"]: needs at least one of the keys brdf, haar, table, or lambert, or a )"
+       R"(model: ggx, blinn-phong, ward, lafortune, ashikhmin-shirley)"},
+      {R"("lambert")", R"("blin-phong")",
+       R"(materials["floor"]: unknown key "blin-phong", the nearest known is "blinn-phong")"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("ggx": 0.2)",
+       R"(materials["floor"].ggx: must be an object, is a number)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("ggx": {"exponent": 2})",
+       R"(materials["floor"].ggx: unknown key "exponent")"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("ggx": {"roughness": 0})",
+       R"(materials["floor"].ggx.roughness: must lie between 0.001 and 1)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("ward": {"roughness": 1.5})",
+       R"(materials["floor"].ward.roughness: must lie between 0.001 and 1)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("blinn-phong": {"exponent": -1})",
+       R"(materials["floor"].blinn-phong.exponent: must lie between 0.001 and 1000000)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("ashikhmin-shirley": {"specular": [0, 0, 2]})",
+       R"(materials["floor"].ashikhmin-shirley.specular: must hold albedos between 0 and 1)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("ward": {"diffuse": 0.5})",
+       R"(materials["floor"].ward.diffuse: must be an array, is a number)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("lafortune": {"lobe_xy": 11})",
+       R"(materials["floor"].lafortune.lobe_xy: must lie between -10 and 10)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("lafortune": {"lobe_xy": 0, "lobe_z": 0})",
+       R"(materials["floor"].lafortune: lobe_xy and lobe_z must not both be zero)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("ggx": {}, "haar": "a")",
+       R"(materials["floor"]: a model stands alone, without brdf, haar, table or another model)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("ggx": {}, "ward": {})",
+       R"(materials["floor"]: a model stands alone)"}};
   for (const auto& mistake : mistakes) {
     INFO(mistake.to << " instead of " << mistake.from);
     const std::string text = complaint(replaced(plain_scene, mistake.from, mistake.to));

@@ -8,7 +8,14 @@
 
 namespace haarlight::renderer {
 
-enum class SamplerKind : std::uint8_t { Product, ProductTable, Light, Brdf, Mis };
+enum class SamplerKind : std::uint8_t {
+  Product,
+  ProductTable,
+  Light,
+  Brdf,
+  Mis,
+  Factored,
+};
 
 /// What a sampler wants made when a scene is loaded; bits.
 enum SamplerNeed : unsigned {
@@ -16,7 +23,8 @@ enum SamplerNeed : unsigned {
   NeedsLightTree = 1,         ///< the light's tree in the world's frame
   NeedsLightDistribution = 2, ///< the probe's pixels as a distribution
   NeedsMaterialTrees = 4,     ///< the θ_r-only sets
-  NeedsTables = 8             ///< the paper's tables, which the scene must name
+  NeedsTables = 8,            ///< the paper's tables, which the scene must name
+  NeedsLobes = 16 ///< the θ_r-only sets of materials that have no sampling routine of their own
 };
 
 /// What samplers return as density.

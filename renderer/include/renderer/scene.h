@@ -5,6 +5,8 @@
 #include <renderer/shape.h>
 #include <renderer/transform.h>
 
+#include <brdf/analytic.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,13 +40,14 @@ struct LightDescription {
   bool background = true; ///< the light itself is seen where no object is; else black
 };
 
-/// At least one of the files, or `lambert` alone.
+/// At least one of the files, or `lambert` or `model` alone.
 struct MaterialDescription {
   std::string name;
   std::string brdf;           ///< MERL file, or empty
   std::string haar;           ///< trees of the θ_r-only set, or empty
   std::string table;          ///< trees of the set with rolls, or empty
   std::optional<Rgb> lambert; ///< albedo in [0, 1]: f_r = lambert/π
+  std::optional<brdf::AnalyticBrdf> model;
 };
 
 struct ObjectDescription {

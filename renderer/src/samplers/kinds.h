@@ -34,5 +34,6 @@ MakeFactory make_brdf_factory;
 MakeFactory make_mis_factory;
 MakeFactory make_product_factory;
 MakeFactory make_product_table_factory;
+MakeFactory make_factored_factory;
 
 } // namespace haarlight::renderer

@@ -1,10 +1,11 @@
 #pragma once
-// Sampling a reflectance alone: descent in the tree of the nearest θ_r cell, in the reflection
-// frame.
+// Sampling a reflectance alone: by its model's own routine in the frame of the normal, or by
+// descent in the tree of the nearest θ_r cell, in the reflection frame.
 
 #include <renderer/material.h>
 #include <renderer/sampler.h>
 
+#include <brdf/analytic_sampling.h>
 #include <wavelet/descent.h>
 
 #include <span>
@@ -26,9 +27,13 @@ public:
   void pdfs(std::span<DirectionSample> samples);
 
 private:
+  void sample_tree(std::span<const Vec2> points, std::span<DirectionSample> out);
+  void tree_pdfs(std::span<DirectionSample> samples);
   /// As many descents from the root of the tree.
   void start(std::size_t count);
 
+  bool m_has_routine = false;
+  brdf::AnalyticSampling m_routine;
   wavelet::TreeDensity m_density;
   Frame m_frame;
   std::vector<Vec2> m_points;

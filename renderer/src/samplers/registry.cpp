@@ -31,14 +31,19 @@ constexpr std::array entries = {
           .make = make_light_factory},
     Entry{.traits = {.kind = SamplerKind::Brdf,
                      .name = "brdf",
-                     .summary = "the reflectance alone, by descent in its tree",
-                     .needs = NeedsMaterialTrees},
+                     .summary = "the reflectance alone: its model's own routine, or its tree",
+                     .needs = NeedsLobes},
           .make = make_brdf_factory},
     Entry{.traits = {.kind = SamplerKind::Mis,
                      .name = "mis",
                      .summary = "half light, half brdf, balance heuristic (Veach and Guibas 1995)",
-                     .needs = NeedsLightDistribution | NeedsMaterialTrees},
+                     .needs = NeedsLightDistribution | NeedsLobes},
           .make = make_mis_factory},
+    Entry{.traits = {.kind = SamplerKind::Factored,
+                     .name = "factored",
+                     .summary = "the reflectance alone, factorised (Lawrence et al. 2004)",
+                     .needs = NeedsNothing},
+          .make = make_factored_factory},
 };
 
 constexpr auto all_traits = [] {
