@@ -70,11 +70,15 @@ void Light::need_distribution() {
     m_distribution.emplace(*m_probe);
 }
 
-wavelet::Map Light::map(int size) const {
-  if (m_probe)
+wavelet::Map Light::map(int most) const {
+  if (m_probe) {
+    int size = 4;
+    while (size < most && size < 2 * m_probe->height())
+      size *= 2;
     return probe::world_map(*m_probe, size, probe::MapOptions{}.supersample);
+  }
   int level = 0;
-  while (level < tree().levels && (1 << level) < size)
+  while (level < tree().levels && (1 << level) < most)
     ++level;
   wavelet::Map result = tree().reconstruct(level);
   for (float& value : result.rgb)

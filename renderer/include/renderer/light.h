@@ -47,9 +47,9 @@ public:
   }
 
   /// Average radiance over the squares of a map, in the light's own frame, of the probe or else of
-  /// the tree; never negative.
-  /// @param size pixels along a side, a power of two ≥ 4; the map is no finer than a lone tree
-  wavelet::Map map(int size) const;
+  /// the tree; never negative. No finer than the tree, or much finer than the probe.
+  /// @param most pixels along a side at most, a power of two ≥ 4
+  wavelet::Map map(int most) const;
 
   Vec3 to_world(const Vec3& w) const { return m_turned ? Vec3(m_to_world * w) : w; }
   Vec3 to_light(const Vec3& w) const { return m_turned ? Vec3(m_to_world.transpose() * w) : w; }
