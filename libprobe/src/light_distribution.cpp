@@ -173,27 +173,67 @@ void LightDistribution::sample(std::span<const Vec2> points, std::span<LightSamp
       rows[i] = find_row(points[begin + i].y());
     for (std::size_t i = 0; i < count; ++i)
       columns[i] = find_column(rows[i], points[begin + i].x());
-    with_mapping(m_mapping, [&](auto map) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const Place place = place_in_pixel(columns[i], rows[i]);
-        LightSample& s = out[begin + i];
-        float stretch = 0;
-        map.direction_and_density(place.u, place.v, s.direction.x(), s.direction.y(),
-                                  s.direction.z(), stretch);
-        s.pdf = density(rows[i].width, columns[i].width, place.area * stretch);
-      }
-    });
+    finish(std::span(rows).first(count), std::span(columns).first(count),
+           out.subspan(begin, count));
   }
+}
+
+void LightDistribution::sample_in(std::span<const PixelPoint> points,
+                                  std::span<LightSample> out) const {
+  constexpr std::size_t batch = 64;
+  std::array<Step, batch> rows;
+  std::array<Step, batch> columns;
+  for (std::size_t begin = 0; begin < points.size(); begin += batch) {
+    const std::size_t count = std::min(batch, points.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      const PixelPoint& point = points[begin + i];
+      rows[i] = step_of_row(point.y);
+      rows[i].fraction = point.fraction.y();
+      columns[i] = step_of_column(point.x, point.y);
+      columns[i].fraction = point.fraction.x();
+    }
+    finish(std::span(rows).first(count), std::span(columns).first(count),
+           out.subspan(begin, count));
+  }
+}
+
+/// The samples at places that both steps of each are known of.
+void LightDistribution::finish(std::span<const Step> rows, std::span<const Step> columns,
+                               std::span<LightSample> out) const {
+  with_mapping(m_mapping, [&](auto map) {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const Place place = place_in_pixel(columns[i], rows[i]);
+      LightSample& s = out[i];
+      float stretch = 0;
+      map.direction_and_density(place.u, place.v, s.direction.x(), s.direction.y(), s.direction.z(),
+                                stretch);
+      s.pdf = density(rows[i].width, columns[i].width, place.area * stretch);
+    }
+  });
+}
+
+LightDistribution::Step LightDistribution::step_of_row(int y) const {
+  const auto row = static_cast<std::size_t>(y);
+  return {y, m_rows[row + 1] - m_rows[row], 0};
+}
+
+LightDistribution::Step LightDistribution::step_of_column(int x, int y) const {
+  const std::uint32_t* cdf = m_columns.data() +
+                             static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width + 1) +
+                             static_cast<std::size_t>(x);
+  return {x, cdf[1] - cdf[0], 0};
+}
+
+double LightDistribution::probability(int x, int y) const {
+  constexpr double unit = 1.0 / one;
+  return (step_of_row(y).width * unit) * (step_of_column(x, y).width * unit);
 }
 
 float LightDistribution::pdf(const Vec3& w) const {
   const Vec2 uv = direction_to_image(m_mapping, w);
   const int x = std::min(static_cast<int>(uv.x() * static_cast<float>(m_width)), m_width - 1);
   const int y = std::min(static_cast<int>(uv.y() * static_cast<float>(m_height)), m_height - 1);
-  const auto row = static_cast<std::size_t>(y);
-  const std::uint32_t* cdf =
-      m_columns.data() + row * static_cast<std::size_t>(m_width + 1) + static_cast<std::size_t>(x);
-  return density(m_rows[row + 1] - m_rows[row], cdf[1] - cdf[0],
+  return density(step_of_row(y).width, step_of_column(x, y).width,
                  pixel_area(x, y, uv.x()) * solid_angle_density(m_mapping, uv));
 }
 

@@ -70,6 +70,22 @@ void Light::need_distribution() {
     m_distribution.emplace(*m_probe);
 }
 
+wavelet::Map Light::map(int most) const {
+  if (m_probe) {
+    int size = 4;
+    while (size < most && size < 2 * m_probe->height())
+      size *= 2;
+    return probe::world_map(*m_probe, size, probe::MapOptions{}.supersample);
+  }
+  int level = 0;
+  while (level < tree().levels && (1 << level) < most)
+    ++level;
+  wavelet::Map result = tree().reconstruct(level);
+  for (float& value : result.rgb)
+    value = std::max(value, 0.0F);
+  return result;
+}
+
 void Light::sample(std::span<const Vec2> points, std::span<probe::LightSample> out) const {
   if (m_distribution)
     return m_distribution->sample(points, out);

@@ -48,9 +48,15 @@ struct TileCost {
 /// What all threads' samplers come from.
 struct Factories {
   Factories(const LoadedScene& scene, const RenderOptions& options)
-      : sampler(make_sampler_factory(options.sampler, scene, options.sampling)) {
+      : sampler(make_sampler_factory(options.sampler, scene, sampling_of(options))) {
     if (needs_unshadowed(options.estimator) && !traits(options.sampler).follows_product)
       integrator = make_sampler_factory(SamplerKind::Product, scene, options.sampling);
+  }
+
+  static SamplerOptions sampling_of(const RenderOptions& options) {
+    SamplerOptions result = options.sampling;
+    result.count = static_cast<std::size_t>(options.spp);
+    return result;
   }
 
   std::unique_ptr<SamplerFactory> sampler;

@@ -28,7 +28,7 @@ cat >sphere.json <<'END'
   "materials": {"measured": {"brdf": "brdf.binary", "haar": "brdf.haar", "table": "brdf.table.haar"}},
   "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "measured"}] }
 END
-for sampler in product product-table light brdf mis factored; do
+for sampler in product product-table light brdf mis factored alias median-cut kollig-keller structured ostromoukhov; do
   scene=scene.json
   [ $sampler = product-table ] && scene=sphere.json
   expect 0 haarrender $scene -o $sampler.exr --sampler $sampler --spp 4

@@ -21,7 +21,8 @@ TEST_CASE("the product's own integral is close to the truth") {
   for (const char* material : {"rough", "glossy"}) {
     const SceneDescription description = fixture().scene(material, "studio");
     const LoadedScene scene(description, {}, SamplerKind::Product, false);
-    const auto sampler = make_sampler_factory(SamplerKind::Product, scene, {})->make();
+    const auto factory = make_sampler_factory(SamplerKind::Product, scene, {});
+    const auto sampler = factory->make();
     const probe::Probe source = probe_of(description);
     double truth = 0;
     double product = 0;

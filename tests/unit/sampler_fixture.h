@@ -178,7 +178,8 @@ inline int count_strays(const SceneDescription& description, SamplerKind kind,
                         const std::string& what, std::uint32_t key) {
   const probe::Probe source = probe_of(description);
   const LoadedScene scene(description, {}, kind, false);
-  const auto sampler = make_sampler_factory(kind, scene, {})->make();
+  const auto factory = make_sampler_factory(kind, scene, {});
+  const auto sampler = factory->make();
   int strays = 0;
   for (const ShadingPoint& point : shading_points()) {
     sampler->prepare(point, scene.materials()[0]);
@@ -214,7 +215,8 @@ inline void check_unbiased(std::span<const SamplerKind> kinds, int allowed_beyon
 inline void check_density(const SceneDescription& description, SamplerKind kind,
                           const std::string& what, std::uint32_t key) {
   const LoadedScene scene(description, {}, kind, false);
-  const auto sampler = make_sampler_factory(kind, scene, {})->make();
+  const auto factory = make_sampler_factory(kind, scene, {});
+  const auto sampler = factory->make();
   sampler->prepare(shading_points()[3], scene.materials()[0]);
   constexpr int count = 100000;
   std::vector<DirectionSample> samples(count);

@@ -37,6 +37,22 @@ public:
   /// The same for many points at once, whose steps wait for memory side by side.
   void sample(std::span<const Vec2> points, std::span<LightSample> out) const;
 
+  /// A place in a pixel: fractions in [0, 1) of the way across and down.
+  struct PixelPoint {
+    int x = 0;
+    int y = 0;
+    Vec2 fraction = Vec2::Zero();
+  };
+
+  /// Probability with which sample() draws a pixel; they add up to 1.
+  double probability(int x, int y) const;
+
+  /// What sample() returns once it has drawn a pixel, for pixels drawn by other means.
+  void sample_in(std::span<const PixelPoint> points, std::span<LightSample> out) const;
+
+  int width() const { return m_width; }
+  int height() const { return m_height; }
+
   /// Density of sample() in solid angle at a unit direction, sr⁻¹.
   float pdf(const Vec3& w) const;
 
@@ -63,6 +79,10 @@ private:
   static Step find(const std::uint32_t* cdf, const std::uint32_t* guide, int parts, float u);
   Step find_row(float u) const;
   Step find_column(const Step& row, float u) const;
+  Step step_of_row(int y) const;
+  Step step_of_column(int x, int y) const;
+  void finish(std::span<const Step> rows, std::span<const Step> columns,
+              std::span<LightSample> out) const;
   Place place_in_pixel(const Step& column, const Step& row) const;
   static Place place_at_rim(const PixelRectangle& pixel, float s, float t);
   float pixel_area(int x, int y, float u) const;

@@ -6,6 +6,7 @@
 
 #include <probe/light_distribution.h>
 #include <probe/probe.h>
+#include <wavelet/map_set.h>
 
 #include <optional>
 #include <span>
@@ -39,6 +40,16 @@ public:
   /// after need_distribution(). Densities in sr⁻¹.
   void sample(std::span<const Vec2> points, std::span<probe::LightSample> out) const;
   float pdf(const Vec3& w) const;
+
+  /// The probe's pixels as a distribution, after need_distribution(); null if there is no probe.
+  const probe::LightDistribution* distribution() const {
+    return m_distribution ? &*m_distribution : nullptr;
+  }
+
+  /// Average radiance over the squares of a map, in the light's own frame, of the probe or else of
+  /// the tree; never negative. No finer than the tree, or much finer than the probe.
+  /// @param most pixels along a side at most, a power of two ≥ 4
+  wavelet::Map map(int most) const;
 
   Vec3 to_world(const Vec3& w) const { return m_turned ? Vec3(m_to_world * w) : w; }
   Vec3 to_light(const Vec3& w) const { return m_turned ? Vec3(m_to_world.transpose() * w) : w; }

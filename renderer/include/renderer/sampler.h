@@ -69,6 +69,8 @@ public:
 
 struct SamplerOptions {
   wavelet::AdaptiveOptions product;
+  std::size_t count = 0; ///< samples that a pass is likely to ask for; what depends on the count is
+                         ///< then made beforehand
 };
 
 /// What the samplers of all threads share, made once for a scene; makes each thread's own.

@@ -15,6 +15,11 @@ enum class SamplerKind : std::uint8_t {
   Brdf,
   Mis,
   Factored,
+  Alias,
+  MedianCut,
+  KolligKeller,
+  Structured,
+  Ostromoukhov
 };
 
 /// What a sampler wants made when a scene is loaded; bits.

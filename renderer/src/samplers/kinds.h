@@ -35,5 +35,10 @@ MakeFactory make_mis_factory;
 MakeFactory make_product_factory;
 MakeFactory make_product_table_factory;
 MakeFactory make_factored_factory;
+MakeFactory make_alias_factory;
+MakeFactory make_median_cut_factory;
+MakeFactory make_kollig_keller_factory;
+MakeFactory make_structured_factory;
+MakeFactory make_ostromoukhov_factory;
 
 } // namespace haarlight::renderer

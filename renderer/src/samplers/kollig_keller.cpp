@@ -1,0 +1,185 @@
+// Lamps by relaxation (Kollig and Keller 2003, "Efficient Illumination by High Dynamic Range
+// Images"): Lloyd's algorithm on the sphere, weighted by luminance, with sites added step by step
+// where the energy is.
+
+#include "kinds.h"
+#include "lamps.h"
+
+#include <wavelet/parallel.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace haarlight::renderer {
+namespace {
+
+constexpr int rounds_between_splits = 4;
+constexpr int rounds_at_last = 16;
+
+/// Pixels side by side, which share the sites that any of them may belong to.
+struct Block {
+  Vec3 centre;
+  float reach = 0; ///< the greatest chord from the centre to a pixel
+};
+
+class Relaxation {
+public:
+  explicit Relaxation(const LightPixels& pixels)
+      : m_pixels(pixels), m_block_side(std::min(8, pixels.size)),
+        m_blocks_across(pixels.size / m_block_side), m_cells(pixels.count()) {
+    const auto blocks =
+        static_cast<std::size_t>(m_blocks_across) * static_cast<std::size_t>(m_blocks_across);
+    for (std::size_t b = 0; b < blocks; ++b)
+      m_blocks.push_back(bounds_of(b));
+  }
+
+  std::vector<Lamp> lamps(std::size_t count) {
+    Centroid whole;
+    for (std::size_t i = 0; i < m_pixels.count(); ++i)
+      whole.add(m_pixels.directions[i], m_pixels.luminance[i]);
+    m_sites.assign(1, whole.direction());
+    while (m_sites.size() < count && split(count))
+      relax(rounds_between_splits);
+    relax(rounds_at_last);
+    assign();
+    return lamps_of_regions(m_pixels, m_cells, m_sites.size());
+  }
+
+private:
+  template <class Visit>
+  void for_each_pixel(std::size_t block, Visit visit) const {
+    const int x0 = static_cast<int>(block) % m_blocks_across * m_block_side;
+    const int y0 = static_cast<int>(block) / m_blocks_across * m_block_side;
+    for (int y = y0; y < y0 + m_block_side; ++y)
+      for (int x = x0; x < x0 + m_block_side; ++x)
+        visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(m_pixels.size) +
+              static_cast<std::size_t>(x));
+  }
+
+  Block bounds_of(std::size_t block) const {
+    Vec3 sum = Vec3::Zero();
+    for_each_pixel(block, [&](std::size_t i) { sum += m_pixels.directions[i]; });
+    Block result{sum.norm() > 1e-3F ? sum.normalized() : Vec3(Vec3::UnitZ())};
+    for_each_pixel(block, [&](std::size_t i) {
+      result.reach = std::max(result.reach, (m_pixels.directions[i] - result.centre).norm());
+    });
+    return result;
+  }
+
+  void relax(int rounds) {
+    for (int i = 0; i < rounds; ++i) {
+      assign();
+      move();
+    }
+  }
+
+  /// Gives every pixel to the nearest site.
+  void assign() {
+    parallel_ranges(m_blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+      std::vector<float> distances(m_sites.size());
+      std::vector<std::uint32_t> near;
+      for (std::size_t b = begin; b < end; ++b) {
+        find_near(m_blocks[b], distances, near);
+        for_each_pixel(b, [&](std::size_t i) { m_cells[i] = nearest(i, near); });
+      }
+    });
+  }
+
+  /// The sites that pixels of a block may belong to: the block's nearest, and none that is further
+  /// than the way there from the furthest pixel and back.
+  void find_near(const Block& block, std::vector<float>& distances,
+                 std::vector<std::uint32_t>& near) const {
+    float least = std::numeric_limits<float>::max();
+    for (std::size_t k = 0; k < m_sites.size(); ++k) {
+      distances[k] = (m_sites[k] - block.centre).squaredNorm();
+      least = std::min(least, distances[k]);
+    }
+    const float limit = std::sqrt(least) + 2 * block.reach + 1e-5F;
+    near.clear();
+    for (std::size_t k = 0; k < m_sites.size(); ++k)
+      if (distances[k] <= limit * limit)
+        near.push_back(static_cast<std::uint32_t>(k));
+  }
+
+  std::uint32_t nearest(std::size_t pixel, const std::vector<std::uint32_t>& near) const {
+    float least = std::numeric_limits<float>::max();
+    std::uint32_t result = 0;
+    for (const std::uint32_t k : near) {
+      const float distance = squared_distance(pixel, k);
+      if (distance < least) {
+        least = distance;
+        result = k;
+      }
+    }
+    return result;
+  }
+
+  float squared_distance(std::size_t pixel, std::uint32_t site) const {
+    return (m_pixels.directions[pixel] - m_sites[site]).squaredNorm();
+  }
+
+  /// Moves sites to the centroids of their cells, and drops those whose cells are dark.
+  void move() {
+    std::vector<Centroid> centroids(m_sites.size());
+    for (std::size_t i = 0; i < m_pixels.count(); ++i)
+      centroids[m_cells[i]].add(m_pixels.directions[i], m_pixels.luminance[i]);
+    m_sites.clear();
+    for (const Centroid& c : centroids)
+      if (c.weight() > 0)
+        m_sites.push_back(c.direction());
+  }
+
+  /// A cell's energy, and the pixel that adds most to its moment of inertia.
+  struct Spread {
+    double energy = 0;
+    float inertia = 0;
+    std::size_t pixel = 0;
+  };
+
+  /// Adds sites to the strongest cells, half as many as there are or what is left. Returns whether
+  /// it found some that can be split.
+  bool split(std::size_t count) {
+    assign();
+    std::vector<Spread> spreads(m_sites.size());
+    for (std::size_t i = 0; i < m_pixels.count(); ++i)
+      measure(i, spreads[m_cells[i]]);
+    std::erase_if(spreads, [](const Spread& s) { return !(s.inertia > 0); });
+    std::ranges::stable_sort(spreads, std::greater(), &Spread::energy);
+    const std::size_t room = std::min(count - m_sites.size(), (m_sites.size() + 1) / 2);
+    spreads.resize(std::min(spreads.size(), room));
+    for (const Spread& s : spreads)
+      m_sites.push_back(m_pixels.directions[s.pixel]);
+    return !spreads.empty();
+  }
+
+  void measure(std::size_t pixel, Spread& spread) const {
+    const float weight = m_pixels.luminance[pixel];
+    spread.energy += static_cast<double>(weight);
+    // Rounding keeps a lone pixel's centroid from lying quite on it.
+    const float distance = squared_distance(pixel, m_cells[pixel]);
+    const float inertia = distance > 1e-10F ? weight * distance : 0;
+    if (inertia > spread.inertia) {
+      spread.inertia = inertia;
+      spread.pixel = pixel;
+    }
+  }
+
+  const LightPixels& m_pixels;
+  int m_block_side;
+  int m_blocks_across;
+  std::vector<Block> m_blocks;
+  std::vector<Vec3> m_sites;
+  std::vector<std::uint32_t> m_cells; ///< of each pixel, its site
+};
+
+} // namespace
+
+std::unique_ptr<SamplerFactory> make_kollig_keller_factory(const LoadedScene& scene,
+                                                           const SamplerOptions& options) {
+  return lamp_factory(
+      scene.light(),
+      [](const LightPixels& pixels, std::size_t count) { return Relaxation(pixels).lamps(count); },
+      options);
+}
+
+} // namespace haarlight::renderer

@@ -1,0 +1,163 @@
+#include "lamps.h"
+
+#include <wavelet/sphere_map.h>
+
+#include <algorithm>
+
+namespace haarlight::renderer {
+namespace {
+
+/// As fine as a probe of a thousand pixels across, and soon gone through.
+constexpr int map_size = 512;
+
+/// Lamps as samples; where there are fewer lamps than samples the rest count nothing.
+struct LampSamples {
+  LampSamples(std::span<const Lamp> lamps, std::size_t count)
+      : samples(count, {Vec3::UnitZ(), 0}), radiance(count, Rgb::Zero()) {
+    for (std::size_t i = 0; i < lamps.size(); ++i) {
+      samples[i] = {lamps[i].direction, 1 / (static_cast<float>(count) * lamps[i].solid_angle)};
+      radiance[i] = lamps[i].radiance;
+    }
+  }
+
+  std::vector<DirectionSample> samples;
+  std::vector<Rgb> radiance;
+};
+
+/// All counts' lamps, each made once.
+class LampBook {
+public:
+  LampBook(const Light& light, MakeLamps make) : m_pixels(light), m_make(std::move(make)) {}
+
+  const LampSamples& of(std::size_t count) const {
+    const std::lock_guard lock(m_mutex);
+    auto found = m_sets.find(count);
+    if (found == m_sets.end())
+      found = m_sets.emplace(count, LampSamples(m_make(m_pixels, count), count)).first;
+    return found->second;
+  }
+
+private:
+  LightPixels m_pixels;
+  MakeLamps m_make;
+  mutable std::mutex m_mutex;
+  mutable std::map<std::size_t, LampSamples> m_sets;
+};
+
+class LampSampler : public Sampler {
+public:
+  explicit LampSampler(std::shared_ptr<const LampBook> book) : m_book(std::move(book)) {}
+
+  void prepare(const ShadingPoint& /*point*/, const Material& /*material*/) override {}
+
+  void sample(const PointSource& /*points*/, std::span<DirectionSample> out) override {
+    if (m_lamps == nullptr || m_lamps->samples.size() != out.size())
+      m_lamps = &m_book->of(out.size());
+    std::ranges::copy(m_lamps->samples, out.begin());
+  }
+
+  /// That of the nearest lamp, whose region the direction most likely lies in.
+  float pdf(const Vec3& direction, std::size_t count) const override {
+    float most = -2;
+    float result = 0;
+    for (const DirectionSample& s : m_book->of(count).samples) {
+      const float cosine = s.direction.dot(direction);
+      if (s.pdf > 0 && cosine > most) {
+        most = cosine;
+        result = s.pdf;
+      }
+    }
+    return result;
+  }
+
+  void radiance(const Light& /*light*/, std::span<const Vec3> /*directions*/,
+                std::span<Rgb> out) const override {
+    std::copy_n(m_lamps->radiance.begin(), out.size(), out.begin());
+  }
+
+private:
+  std::shared_ptr<const LampBook> m_book;
+  const LampSamples* m_lamps = nullptr; ///< of the last count
+};
+
+class LampFactory : public SamplerFactory {
+public:
+  LampFactory(const Light& light, MakeLamps make, std::size_t count)
+      : m_book(std::make_shared<LampBook>(light, std::move(make))) {
+    if (count > 0)
+      m_book->of(count);
+  }
+
+  std::unique_ptr<Sampler> make() const override { return std::make_unique<LampSampler>(m_book); }
+
+private:
+  std::shared_ptr<const LampBook> m_book; ///< samplers keep it too, and may outlive the factory
+};
+
+} // namespace
+
+LightPixels::LightPixels(const Light& light) {
+  const wavelet::Map map = light.map(map_size);
+  size = map.size;
+  const auto side = static_cast<float>(size);
+  solid_angle = wavelet::sphere_area / (side * side);
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const Vec2 centre((static_cast<float>(x) + 0.5F) / side,
+                        (static_cast<float>(y) + 0.5F) / side);
+      directions.push_back(wavelet::square_to_sphere(centre));
+      radiance.push_back(map.at(x, y));
+      luminance.push_back(haarlight::luminance(radiance.back()));
+    }
+}
+
+void Centroid::add(const Vec3& direction, float weight) {
+  const auto w = static_cast<double>(weight);
+  m_x += w * static_cast<double>(direction.x());
+  m_y += w * static_cast<double>(direction.y());
+  m_z += w * static_cast<double>(direction.z());
+  m_weight += w;
+  if (weight > m_most) {
+    m_most = weight;
+    m_brightest = direction;
+  }
+}
+
+Vec3 Centroid::direction() const {
+  const double length = std::sqrt(m_x * m_x + m_y * m_y + m_z * m_z);
+  if (length <= 1e-4 * m_weight)
+    return m_brightest;
+  return {static_cast<float>(m_x / length), static_cast<float>(m_y / length),
+          static_cast<float>(m_z / length)};
+}
+
+std::vector<Lamp> lamps_of_regions(const LightPixels& pixels,
+                                   std::span<const std::uint32_t> regions, std::size_t count) {
+  struct Region {
+    Centroid centroid;
+    Eigen::Array3d radiance = Eigen::Array3d::Zero();
+    std::size_t pixels = 0;
+  };
+  std::vector<Region> sums(count);
+  for (std::size_t i = 0; i < pixels.count(); ++i) {
+    Region& region = sums[regions[i]];
+    region.centroid.add(pixels.directions[i], pixels.luminance[i]);
+    region.radiance += pixels.radiance[i].cast<double>();
+    ++region.pixels;
+  }
+  std::vector<Lamp> result;
+  for (const Region& region : sums)
+    if (region.centroid.weight() > 0) {
+      const auto area = static_cast<double>(region.pixels);
+      result.push_back({region.centroid.direction(), (region.radiance / area).cast<float>(),
+                        static_cast<float>(area) * pixels.solid_angle});
+    }
+  return result;
+}
+
+std::unique_ptr<SamplerFactory> lamp_factory(const Light& light, MakeLamps make,
+                                             const SamplerOptions& options) {
+  return std::make_unique<LampFactory>(light, std::move(make), options.count);
+}
+
+} // namespace haarlight::renderer

@@ -1,0 +1,262 @@
+// Lamps in strata of like brightness (Agarwal, Ramamoorthi, Belongie and Jensen 2003, "Structured
+// Importance Sampling of Environment Maps").
+
+#include "kinds.h"
+#include "lamps.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <queue>
+
+namespace haarlight::renderer {
+namespace {
+
+constexpr int threshold_count = 6;
+/// Solid angle beyond which a region's occlusion is no longer of a piece.
+constexpr double coherent_solid_angle = 0.01;
+
+/// What lies in a connected component of one threshold but in none of the next.
+struct Stratum {
+  std::uint32_t parent = 0; ///< of the lower threshold; itself for the whole sphere, which is first
+  double energy = 0;
+  std::size_t pixels = 0;
+  std::size_t lamps = 0;
+
+  /// The paper's Γ = L ΔΩ^¼.
+  double importance(double pixel_solid_angle) const {
+    const double area = static_cast<double>(pixels) * pixel_solid_angle;
+    return energy * std::sqrt(std::sqrt(std::min(area, coherent_solid_angle)));
+  }
+};
+
+/// Strata of a light and how many lamps each gets.
+class Stratification {
+public:
+  Stratification(const LightPixels& pixels, std::size_t count)
+      : m_pixels(pixels), m_stratum(pixels.count(), 0), m_strata(1) {
+    find_components();
+    for (std::size_t i = 0; i < pixels.count(); ++i) {
+      Stratum& s = m_strata[m_stratum[i]];
+      s.energy += static_cast<double>(pixels.luminance[i]);
+      ++s.pixels;
+    }
+    merge_weak(static_cast<double>(count));
+    share_out(count);
+  }
+
+  const std::vector<Stratum>& strata() const { return m_strata; }
+
+  /// Pixels in the order of their strata.
+  std::vector<std::uint32_t> order() const {
+    std::vector<std::uint32_t> result(m_pixels.count());
+    std::iota(result.begin(), result.end(), 0U);
+    std::ranges::stable_sort(result, std::less(), [&](std::uint32_t i) { return m_stratum[i]; });
+    return result;
+  }
+
+private:
+  void find_components() {
+    double mean = 0;
+    double square = 0;
+    const auto n = static_cast<double>(m_pixels.count());
+    for (const float value : m_pixels.luminance) {
+      const auto y = static_cast<double>(value);
+      mean += y / n;
+      square += y * y / n;
+    }
+    const double deviation = std::sqrt(std::max(0.0, square - mean * mean));
+    for (int i = 0; i < threshold_count; ++i)
+      divide(mean + i * deviation);
+  }
+
+  /// Makes strata of the components of what is brighter than a threshold.
+  void divide(double threshold) {
+    const auto first = static_cast<std::uint32_t>(m_strata.size());
+    for (std::size_t i = 0; i < m_pixels.count(); ++i)
+      if (is_new(i, first, threshold)) {
+        m_strata.push_back({.parent = m_stratum[i]});
+        flood(i, first, threshold);
+      }
+  }
+
+  bool is_new(std::size_t pixel, std::uint32_t first, double threshold) const {
+    return m_stratum[pixel]<first&& static_cast<double>(m_pixels.luminance[pixel])> threshold;
+  }
+
+  void flood(std::size_t seed, std::uint32_t first, double threshold) {
+    const auto label = static_cast<std::uint32_t>(m_strata.size() - 1);
+    m_stack.assign(1, seed);
+    m_stratum[seed] = label;
+    while (!m_stack.empty()) {
+      const std::size_t pixel = m_stack.back();
+      m_stack.pop_back();
+      for (const std::size_t next : neighbours(pixel))
+        if (is_new(next, first, threshold)) {
+          m_stratum[next] = label;
+          m_stack.push_back(next);
+        }
+    }
+  }
+
+  /// The four that share an edge, on the square or across its folded rim.
+  std::array<std::size_t, 4> neighbours(std::size_t pixel) const {
+    const auto size = static_cast<std::size_t>(m_pixels.size);
+    const std::size_t x = pixel % size;
+    const std::size_t y = pixel / size;
+    const std::size_t last = size - 1;
+    const std::size_t beside = (last - y) * size + x;
+    const std::size_t above = y * size + last - x;
+    return {x > 0 ? pixel - 1 : beside, x < last ? pixel + 1 : beside, y > 0 ? pixel - size : above,
+            y < last ? pixel + size : above};
+  }
+
+  double importance(const Stratum& s) const {
+    return s.importance(static_cast<double>(m_pixels.solid_angle));
+  }
+
+  /// Strata whose share is less than half a lamp go to what surrounds them.
+  void merge_weak(double count) {
+    double sum = 0;
+    for (const Stratum& s : m_strata)
+      sum += importance(s);
+    std::vector<std::uint32_t> into(m_strata.size());
+    std::iota(into.begin(), into.end(), 0U);
+    for (std::size_t k = m_strata.size(); --k > 0;)
+      if (count * importance(m_strata[k]) < 0.5 * sum) {
+        Stratum& parent = m_strata[m_strata[k].parent];
+        parent.energy += m_strata[k].energy;
+        parent.pixels += m_strata[k].pixels;
+        into[k] = m_strata[k].parent;
+        m_strata[k].energy = 0;
+        m_strata[k].pixels = 0;
+      }
+    for (std::size_t k = 1; k < into.size(); ++k)
+      into[k] = into[into[k]];
+    for (std::uint32_t& stratum : m_stratum)
+      stratum = into[stratum];
+  }
+
+  /// Lamps in proportion to importance (Webster's rule), but no more than pixels.
+  void share_out(std::size_t count) {
+    using Claim = std::pair<double, std::size_t>;
+    std::priority_queue<Claim> claims;
+    const auto claim = [&](std::size_t k) {
+      const Stratum& s = m_strata[k];
+      if (s.lamps < s.pixels && s.energy > 0)
+        claims.push({importance(s) / (static_cast<double>(s.lamps) + 0.5), k});
+    };
+    for (std::size_t k = 0; k < m_strata.size(); ++k)
+      claim(k);
+    for (std::size_t i = 0; i < count && !claims.empty(); ++i) {
+      const std::size_t k = claims.top().second;
+      claims.pop();
+      ++m_strata[k].lamps;
+      claim(k);
+    }
+  }
+
+  const LightPixels& m_pixels;
+  std::vector<std::uint32_t> m_stratum; ///< of each pixel
+  std::vector<Stratum> m_strata;        ///< those of higher thresholds later
+  std::vector<std::size_t> m_stack;
+};
+
+/// Divides strata among centres far from one another (Hochbaum and Shmoys 1985: each next centre is
+/// the pixel furthest from all), the brightest strata first, whose centres the others keep off too.
+class Centres {
+public:
+  Centres(const LightPixels& pixels, const Stratification& stratification)
+      : m_pixels(pixels), m_order(stratification.order()), m_regions(pixels.count(), none) {
+    const std::vector<Stratum>& strata = stratification.strata();
+    std::size_t end = pixels.count();
+    for (std::size_t k = strata.size(); k-- > 0;) {
+      const std::size_t begin = end - strata[k].pixels;
+      place(std::span(m_order).subspan(begin, end - begin), strata[k].lamps);
+      end = begin;
+    }
+    for (std::size_t i = 0; i < pixels.count(); ++i)
+      if (m_regions[i] == none)
+        m_regions[i] = nearest(i);
+  }
+
+  std::vector<Lamp> lamps() const {
+    if (m_centres.empty())
+      return {};
+    return lamps_of_regions(m_pixels, m_regions, m_centres.size());
+  }
+
+private:
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  void place(std::span<const std::uint32_t> stratum, std::size_t lamps) {
+    if (lamps == 0)
+      return;
+    m_any.assign(stratum.size(), std::numeric_limits<float>::max());
+    m_own.assign(stratum.size(), std::numeric_limits<float>::max());
+    for (std::size_t j = 0; j < stratum.size(); ++j)
+      for (const Vec3& centre : m_centres)
+        m_any[j] = std::min(m_any[j], distance(stratum[j], centre));
+    std::size_t next = m_centres.empty() ? brightest(stratum) : furthest();
+    for (; lamps > 0 && m_any[next] > 0; --lamps) {
+      add(stratum, m_pixels.directions[stratum[next]]);
+      next = furthest();
+    }
+  }
+
+  void add(std::span<const std::uint32_t> stratum, const Vec3& centre) {
+    const auto label = static_cast<std::uint32_t>(m_centres.size());
+    m_centres.push_back(centre);
+    for (std::size_t j = 0; j < stratum.size(); ++j) {
+      const float d = distance(stratum[j], centre);
+      m_any[j] = std::min(m_any[j], d);
+      if (d < m_own[j]) {
+        m_own[j] = d;
+        m_regions[stratum[j]] = label;
+      }
+    }
+  }
+
+  float distance(std::size_t pixel, const Vec3& centre) const {
+    return (m_pixels.directions[pixel] - centre).squaredNorm();
+  }
+
+  std::size_t furthest() const {
+    return static_cast<std::size_t>(std::ranges::max_element(m_any) - m_any.begin());
+  }
+
+  std::size_t brightest(std::span<const std::uint32_t> stratum) const {
+    const auto found = std::ranges::max_element(
+        stratum, std::less(), [&](std::uint32_t i) { return m_pixels.luminance[i]; });
+    return static_cast<std::size_t>(found - stratum.begin());
+  }
+
+  /// Of all centres, for pixels whose stratum has none.
+  std::uint32_t nearest(std::size_t pixel) const {
+    const auto found = std::ranges::min_element(
+        m_centres, std::less(), [&](const Vec3& centre) { return distance(pixel, centre); });
+    return static_cast<std::uint32_t>(found - m_centres.begin());
+  }
+
+  const LightPixels& m_pixels;
+  std::vector<std::uint32_t> m_order;
+  std::vector<std::uint32_t> m_regions; ///< of each pixel, its centre
+  std::vector<Vec3> m_centres;
+  std::vector<float> m_any; ///< of each of a stratum's pixels, squared distance to any centre
+  std::vector<float> m_own; ///< to the nearest in the stratum
+};
+
+} // namespace
+
+std::unique_ptr<SamplerFactory> make_structured_factory(const LoadedScene& scene,
+                                                        const SamplerOptions& options) {
+  return lamp_factory(
+      scene.light(),
+      [](const LightPixels& pixels, std::size_t count) {
+        return Centres(pixels, Stratification(pixels, count)).lamps();
+      },
+      options);
+}
+
+} // namespace haarlight::renderer
