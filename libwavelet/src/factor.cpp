@@ -1,34 +1,26 @@
 #include <wavelet/factor.h>
 
+#include "synchronous_kernel.h"
+
 #include <wavelet/sphere_map.h>
 
 #include <algorithm>
 
 namespace haarlight::wavelet {
 
-TreeFactor::TreeFactor(const TreeView& view, const SquareSymmetry& symmetry)
-    : m_view(view), m_plain(symmetry.turns == 0 && !symmetry.mirrored) {
+detail::TreeTurn::TreeTurn(const SquareSymmetry& symmetry) {
   for (unsigned q = 0; q < 4; ++q)
-    m_stored[q] = symmetry.to_stored(q);
+    stored[q] = static_cast<std::int32_t>(symmetry.to_stored(q));
+  swaps = (stored[0] ^ stored[1]) == 2;
+  sign_x = (stored[0] & (swaps ? 2 : 1)) == 0 ? 1.0F : -1.0F;
+  sign_y = (stored[0] & (swaps ? 1 : 2)) == 0 ? 1.0F : -1.0F;
 }
 
+TreeFactor::TreeFactor(const TreeView& view, const SquareSymmetry& symmetry)
+    : m_view(view), m_turn(symmetry), m_plain(symmetry.turns == 0 && !symmetry.mirrored) {}
+
 void TreeFactor::split(const FactorSquares& squares, const FactorQuadrants& out) const {
-  for (std::size_t i = 0; i < squares.count; ++i) {
-    Float4* mean = out.mean + 4 * i;
-    std::uint32_t* detail = out.detail + 4 * i;
-    const std::uint32_t node = squares.detail[i];
-    if (node == no_node) {
-      std::fill_n(mean, 4, squares.mean[i]);
-      std::fill_n(detail, 4, no_node);
-      continue;
-    }
-    const auto means = m_view.details(node).children(squares.mean[i]);
-    const auto nodes = m_view.children(node);
-    for (unsigned q = 0; q < 4; ++q) {
-      mean[q] = means[m_stored[q]];
-      detail[q] = nodes[m_stored[q]];
-    }
-  }
+  detail::split_tree(m_view, m_turn, squares, out);
 }
 
 void ConstantFactor::split(const FactorSquares& squares, const FactorQuadrants& out) const {

@@ -5,6 +5,8 @@
 namespace haarlight::wavelet {
 
 Rgb ProductTree::integral() const {
+  if (m_integral)
+    return *m_integral;
   Float4 sum = {};
   for (const ProductLeaf& leaf : m_leaves)
     sum += leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);

@@ -1,5 +1,7 @@
 #include <wavelet/synchronous_product.h>
 
+#include "synchronous_kernel.h"
+
 #include <algorithm>
 #include <cassert>
 
@@ -10,17 +12,21 @@ namespace {
 /// thresholding may have lost what a square once held.
 constexpr float product_floor = 0.005F;
 
-bool vanishes(Float4 mean) { return mean[0] == 0 && mean[1] == 0 && mean[2] == 0; }
+template <class T>
+void grow(std::vector<T>& array, std::size_t size) {
+  if (array.size() < size)
+    array.resize(size);
+}
 
 } // namespace
 
-void SynchronousProduct::Frontier::clear(std::size_t factors) {
-  places.clear();
-  means.resize(factors);
-  details.resize(factors);
+void SynchronousProduct::Frontier::make_room(std::size_t factors, std::size_t squares) {
+  grow(places, squares);
+  grow(means, factors);
+  grow(details, factors);
   for (std::size_t f = 0; f < factors; ++f) {
-    means[f].clear();
-    details[f].clear();
+    grow(means[f], squares);
+    grow(details[f], squares);
   }
 }
 
@@ -29,37 +35,37 @@ const ProductTree& SynchronousProduct::build(std::span<const Factor* const> fact
   assert(!factors.empty() && factors.size() < 256 && finest_level >= 1 && finest_level <= 30);
   m_factors = factors;
   m_finest_level = finest_level;
-  m_product.m_nodes.clear();
-  m_product.m_leaves.clear();
-  m_parent_slots.clear();
-  m_quadrant_means.resize(factors.size(), std::vector<Float4>(4 * run));
-  m_quadrant_details.resize(factors.size(), std::vector<std::uint32_t>(4 * run));
-  choose_floors();
+  look_at_factors();
   start();
-  while (!m_now.places.empty()) {
-    m_next.clear(factors.size());
-    for (std::size_t begin = 0; begin < m_now.places.size(); begin += run)
-      split_run(begin, std::min(run, m_now.places.size() - begin));
-    m_first_node += static_cast<std::int32_t>(m_now.places.size());
-    std::swap(m_now, m_next);
-  }
+  Float4 integral = {};
+  for (std::int32_t level = 1; m_now.count > 0; ++level)
+    integral += split_level(level) * power_of_two(-2 * level);
+  m_product.m_nodes.resize(static_cast<std::size_t>(m_first_node));
   m_product.m_leaves.resize(m_leaf_count);
   m_product.m_leaf_count = m_leaf_count;
+  m_product.m_integral = to_rgb(integral);
   m_product.sum_upwards(m_parent_slots);
   return m_product;
 }
 
-void SynchronousProduct::choose_floors() {
+void SynchronousProduct::look_at_factors() {
   m_product.m_rests.resize(m_factors.size());
-  m_is_tree.resize(m_factors.size());
+  m_views.resize(m_factors.size());
+  grow(m_quadrant_means, m_factors.size());
+  grow(m_quadrant_details, m_factors.size());
+  m_needs_places = false;
   for (std::size_t rest = 0; rest < m_factors.size(); ++rest) {
     Float4 others = {1, 1, 1, 0};
     for (std::size_t f = 0; f < m_factors.size(); ++f)
       if (f != rest)
         others *= absolute(m_factors[f]->mean());
+    grow(m_quadrant_means[rest], 4 * detail::square_run);
+    grow(m_quadrant_details[rest], 4 * detail::square_run);
     const TreeView* tree = m_factors[rest]->tree();
-    m_is_tree[rest] = tree != nullptr ? 1 : 0;
     m_product.m_rests[rest] = {tree != nullptr ? *tree : TreeView{}, others * product_floor};
+    m_views[rest] = {m_quadrant_means[rest].data(), m_quadrant_details[rest].data(),
+                     others * product_floor, tree != nullptr ? -1 : 0};
+    m_needs_places = m_needs_places || m_factors[rest]->needs_places();
   }
 }
 
@@ -67,92 +73,84 @@ void SynchronousProduct::choose_floors() {
 void SynchronousProduct::start() {
   m_first_node = 0;
   m_leaf_count = 0;
-  m_now.clear(m_factors.size());
-  m_now.places.push_back({});
+  m_now.make_room(m_factors.size(), 1);
+  m_now.count = 1;
+  m_now.places[0] = {};
   for (std::size_t f = 0; f < m_factors.size(); ++f) {
-    m_now.means[f].push_back(m_factors[f]->mean());
-    m_now.details[f].push_back(m_factors[f]->root());
+    m_now.means[f][0] = m_factors[f]->mean();
+    m_now.details[f][0] = m_factors[f]->root();
   }
-  m_product.m_nodes.emplace_back();
-  m_parent_slots.push_back(-1);
+  grow(m_parent_slots, 1);
+  m_parent_slots[0] = -1;
 }
 
-void SynchronousProduct::split_run(std::size_t begin, std::size_t count) {
-  m_product.m_leaves.resize(m_leaf_count + 4 * count);
+/// Splits all squares at hand; those of their quadrants that want splitting take their place.
+/// @param level of the quadrants
+/// @return Σ of the new leaves' products
+Float4 SynchronousProduct::split_level(std::int32_t level) {
+  grow(m_product.m_nodes, static_cast<std::size_t>(m_first_node) + m_now.count);
+  m_next.count = 0;
+  detail::ProductRun run;
+  run.factors = m_views;
+  run.level = level;
+  run.splits = level < m_finest_level;
+  Float4 sum = {};
+  for (std::size_t begin = 0; begin < m_now.count; begin += detail::square_run) {
+    run.squares = std::min(detail::square_run, m_now.count - begin);
+    split_run(begin, run);
+    sum += run.leaf_sum;
+  }
+  m_first_node += static_cast<std::int32_t>(m_now.count);
+  std::swap(m_now, m_next);
+  return sum;
+}
+
+void SynchronousProduct::split_run(std::size_t begin, detail::ProductRun& run) {
+  const std::size_t node = static_cast<std::size_t>(m_first_node) + begin;
+  grow(m_product.m_leaves, m_leaf_count + 4 * run.squares);
+  run.first_node = static_cast<std::int32_t>(node);
+  run.next_node = m_first_node + static_cast<std::int32_t>(m_now.count + m_next.count);
+  run.next_leaf = static_cast<std::int32_t>(m_leaf_count);
+  run.nodes = m_product.m_nodes.data() + node;
+  run.leaves = m_product.m_leaves.data() + m_leaf_count;
   for (std::size_t f = 0; f < m_factors.size(); ++f)
     m_factors[f]->split({m_now.places.data() + begin, m_now.means[f].data() + begin,
-                         m_now.details[f].data() + begin, count},
-                        {m_quadrant_means[f].data(), m_quadrant_details[f].data()});
-  for (std::size_t i = 0; i < count; ++i)
-    if (m_factors.size() == 2)
-      combine<2>(begin + i, i);
-    else
-      combine<0>(begin + i, i);
+                         m_now.details[f].data() + begin, run.squares},
+                        {m_views[f].means, m_views[f].details});
+  detail::finish_run(run);
+  m_leaf_count += run.leaf_count;
+  queue(run);
+  if (m_needs_places)
+    queue_places(begin, run);
+  m_next.count += run.split_count;
 }
 
-/// Makes a node or a leaf of each quadrant of a square. @tparam Factors how many, or 0: any number
-template <std::size_t Factors>
-void SynchronousProduct::combine(std::size_t square, std::size_t index_in_run) {
-  const std::size_t factors = Factors > 0 ? Factors : m_factors.size();
-  const std::int32_t level = m_now.places[square].level + 1;
-  const std::int32_t node = m_first_node + static_cast<std::int32_t>(square);
-  ProductNode result;
-  for (unsigned q = 0; q < 4; ++q) {
-    const std::size_t quadrant = 4 * index_in_run + q;
-    const Rest rest = what_is_left<Factors>(quadrant);
-    const std::int32_t slot = 4 * node + static_cast<std::int32_t>(q);
-    if (rest.goes_on && level < m_finest_level) {
-      result.child[q] = add_node(m_now.places[square], q, slot, quadrant);
-      continue;
-    }
-    Float4 others = {1, 1, 1, 0};
-    for (std::size_t f = 0; f < factors; ++f)
-      if (f != rest.factor)
-        others *= m_quadrant_means[f][quadrant];
-    ProductLeaf& leaf = m_product.m_leaves[m_leaf_count];
-    leaf.light = m_quadrant_means[rest.factor][quadrant];
-    leaf.reflectance = others;
-    leaf.node = rest.cut ? no_node : m_quadrant_details[rest.factor][quadrant];
-    leaf.slot = slot;
-    leaf.level = static_cast<std::uint8_t>(level);
-    leaf.rest = static_cast<std::uint8_t>(rest.factor);
-    const Float4 floor = m_product.m_rests[rest.factor].floor;
-    result.weights[q] =
-        std::max(lane_sum(leaf.light * larger(others, floor) * luminance_lanes), 0.0F);
-    result.child[q] = ~static_cast<std::int32_t>(m_leaf_count++);
-  }
-  m_product.m_nodes[static_cast<std::size_t>(node)] = result;
-}
-
-/// Looks at a quadrant: whether it wants splitting, and if not, which factor may have detail left.
-template <std::size_t Factors>
-SynchronousProduct::Rest SynchronousProduct::what_is_left(std::size_t quadrant) const {
-  const std::size_t factors = Factors > 0 ? Factors : m_factors.size();
-  std::size_t detailed = 0;
-  std::size_t last = 0;
-  bool zero = false;
-  for (std::size_t f = 0; f < factors; ++f) {
-    const bool constant = m_quadrant_details[f][quadrant] == no_node;
-    zero = zero || (constant && vanishes(m_quadrant_means[f][quadrant]));
-    detailed += constant ? 0 : 1;
-    last = constant ? last : f;
-  }
-  const bool ends = detailed == 0 || (detailed == 1 && m_is_tree[last] != 0);
-  return {last, !ends && !zero, !ends};
-}
-
-/// @return the new node of a square's quadrant
-std::int32_t SynchronousProduct::add_node(const SquarePlace& square, unsigned q, std::int32_t slot,
-                                          std::size_t quadrant) {
-  m_next.places.push_back(
-      {square.level + 1, 2 * square.column + (q & 1U), 2 * square.row + (q >> 1U)});
+/// Puts a run's quadrants that want splitting among the next level's squares.
+void SynchronousProduct::queue(const detail::ProductRun& run) {
+  const std::size_t end = m_next.count + run.split_count;
+  m_next.make_room(m_factors.size(), end);
   for (std::size_t f = 0; f < m_factors.size(); ++f) {
-    m_next.means[f].push_back(m_quadrant_means[f][quadrant]);
-    m_next.details[f].push_back(m_quadrant_details[f][quadrant]);
+    Float4* const means = m_next.means[f].data() + m_next.count;
+    std::uint32_t* const details = m_next.details[f].data() + m_next.count;
+    for (std::size_t i = 0; i < run.split_count; ++i) {
+      const auto quadrant = static_cast<std::size_t>(run.split_quadrants[i]);
+      means[i] = m_views[f].means[quadrant];
+      details[i] = m_views[f].details[quadrant];
+    }
   }
-  m_product.m_nodes.emplace_back();
-  m_parent_slots.push_back(slot);
-  return static_cast<std::int32_t>(m_product.m_nodes.size() - 1);
+  grow(m_parent_slots, static_cast<std::size_t>(run.next_node) + run.split_count);
+  std::int32_t* const slots = m_parent_slots.data() + run.next_node;
+  for (std::size_t i = 0; i < run.split_count; ++i)
+    slots[i] = 4 * run.first_node + run.split_quadrants[i];
+}
+
+void SynchronousProduct::queue_places(std::size_t begin, const detail::ProductRun& run) {
+  for (std::size_t i = 0; i < run.split_count; ++i) {
+    const auto quadrant = static_cast<std::uint32_t>(run.split_quadrants[i]);
+    const SquarePlace& parent = m_now.places[begin + quadrant / 4];
+    m_next.places[m_next.count + i] = {parent.level + 1, 2 * parent.column + (quadrant & 1U),
+                                       2 * parent.row + (quadrant >> 1U & 1U)};
+  }
 }
 
 } // namespace haarlight::wavelet

@@ -47,10 +47,26 @@ public:
   /// Averages and handles of the squares' quadrants. Squares that are constant are split like any.
   virtual void split(const FactorSquares& squares, const FactorQuadrants& out) const = 0;
 
+  /// Whether split() looks at places; if no factor's does, nobody keeps track of them.
+  virtual bool needs_places() const { return true; }
+
   /// The tree that this is and that its handles are nodes of, or nullptr: below a square on which
   /// all other factors are constant, a product is then left to it.
   virtual const TreeView* tree() const { return nullptr; }
 };
+
+namespace detail {
+
+/// How a symmetry of the square moves a node's quadrants and differences.
+struct TreeTurn {
+  Int4 stored;          ///< the stored quadrant that stands for each
+  float sign_x, sign_y; ///< of the differences along x and y, as they are seen
+  bool swaps;           ///< differences along x are stored along y
+
+  explicit TreeTurn(const SquareSymmetry& symmetry);
+};
+
+} // namespace detail
 
 /// A stored tree, seen through the square's symmetry.
 class TreeFactor final : public Factor {
@@ -61,11 +77,12 @@ public:
   Float4 mean() const override { return to_lanes(m_view.mean); }
   std::uint32_t root() const override { return m_view.root(); }
   void split(const FactorSquares& squares, const FactorQuadrants& out) const override;
+  bool needs_places() const override { return false; }
   const TreeView* tree() const override { return m_plain ? &m_view : nullptr; }
 
 private:
   TreeView m_view;
-  unsigned m_stored[4]; ///< the stored quadrant that stands for each
+  detail::TreeTurn m_turn;
   bool m_plain;
 };
 
@@ -77,6 +94,7 @@ public:
   Float4 mean() const override { return m_value; }
   std::uint32_t root() const override { return no_node; }
   void split(const FactorSquares& squares, const FactorQuadrants& out) const override;
+  bool needs_places() const override { return false; }
 
 private:
   Float4 m_value;

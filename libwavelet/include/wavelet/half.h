@@ -11,13 +11,16 @@ namespace haarlight::wavelet {
 
 /// Four finite halves as floats, exact; lanes beyond what is wanted may hold anything finite.
 inline Float4 halves_to_floats(const void* four_halves) {
-  using Short4 = std::uint16_t __attribute__((vector_size(8)));
-  using Unsigned4 = std::uint32_t __attribute__((vector_size(16)));
-  Short4 raw;
+  using Short8 = std::uint16_t __attribute__((vector_size(16)));
+  using Long2 = std::uint64_t __attribute__((vector_size(16)));
+  std::uint64_t raw;
   std::memcpy(&raw, four_halves, sizeof raw);
-  const Unsigned4 bits = __builtin_convertvector(raw, Unsigned4);
-  const Float4 magnitude = std::bit_cast<Float4>((bits & 0x7fffU) << 13U) * 0x1p112F;
-  return std::bit_cast<Float4>(std::bit_cast<Unsigned4>(magnitude) | ((bits & 0x8000U) << 16U));
+  const auto halves = std::bit_cast<Short8>(Long2{raw, 0});
+  const auto upper = std::bit_cast<Int4>(
+      __builtin_shufflevector(Short8{}, halves, 0, 8, 1, 9, 2, 10, 3, 11));
+  // Where a float has them, but for the bias of the exponent and three copies of the sign.
+  const Int4 bits = (upper >> 3) & static_cast<std::int32_t>(0x8fffffffU);
+  return std::bit_cast<Float4>(bits) * 0x1p112F;
 }
 
 inline float half_to_float(std::uint16_t half) {

@@ -10,6 +10,7 @@
 #include <wavelet/tree.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -109,6 +110,7 @@ private:
   std::vector<ProductNode> m_nodes;
   std::vector<ProductLeaf> m_leaves;
   std::size_t m_leaf_count = 0;
+  std::optional<Rgb> m_integral; ///< if it is known already
 };
 
 } // namespace haarlight::wavelet
