@@ -20,136 +20,111 @@ void grow(std::vector<T>& array, std::size_t size) {
 
 } // namespace
 
-void SynchronousProduct::Frontier::make_room(std::size_t factors, std::size_t squares) {
-  grow(places, squares);
-  grow(means, factors);
-  grow(details, factors);
-  for (std::size_t f = 0; f < factors; ++f) {
-    grow(means[f], squares);
-    grow(details[f], squares);
-  }
-}
-
 const ProductTree& SynchronousProduct::build(std::span<const Factor* const> factors,
                                              int finest_level) {
   assert(!factors.empty() && factors.size() < 256 && finest_level >= 1 && finest_level <= 30);
   m_factors = factors;
   m_finest_level = finest_level;
+  m_integral = Float4{};
   look_at_factors();
   start();
-  Float4 integral = {};
-  for (std::int32_t level = 1; m_now.count > 0; ++level)
-    integral += split_level(level) * power_of_two(-2 * level);
-  m_product.m_nodes.resize(static_cast<std::size_t>(m_first_node));
-  m_product.m_leaves.resize(m_leaf_count);
-  m_product.m_leaf_count = m_leaf_count;
-  m_product.m_integral = to_rgb(integral);
+  std::size_t begin = 1;
+  for (std::int32_t level = 2; begin < m_node_count; ++level) {
+    const std::size_t end = m_node_count;
+    make_room(begin, end);
+    if (m_needs_places)
+      find_places(begin, end);
+    for (; begin < end; begin = std::min(begin + run, end))
+      split(begin, std::min(begin + run, end), level);
+  }
+  for (ProductTree::Slots& slots : m_product.m_slots) {
+    slots.means.resize(4 * m_node_count);
+    slots.details.resize(4 * m_node_count);
+  }
+  m_product.m_nodes.resize(m_node_count);
+  m_product.m_leaf_count = 3 * m_node_count + 1;
+  m_product.m_integral = to_rgb(m_integral);
   m_product.sum_upwards(m_parent_slots);
   return m_product;
 }
 
 void SynchronousProduct::look_at_factors() {
   m_product.m_rests.resize(m_factors.size());
+  m_product.m_slots.resize(m_factors.size());
   m_views.resize(m_factors.size());
-  grow(m_quadrant_means, m_factors.size());
-  grow(m_quadrant_details, m_factors.size());
   m_needs_places = false;
   for (std::size_t rest = 0; rest < m_factors.size(); ++rest) {
     Float4 others = {1, 1, 1, 0};
     for (std::size_t f = 0; f < m_factors.size(); ++f)
       if (f != rest)
         others *= absolute(m_factors[f]->mean());
-    grow(m_quadrant_means[rest], 4 * detail::square_run);
-    grow(m_quadrant_details[rest], 4 * detail::square_run);
     const TreeView* tree = m_factors[rest]->tree();
     m_product.m_rests[rest] = {tree != nullptr ? *tree : TreeView{}, others * product_floor};
-    m_views[rest] = {m_quadrant_means[rest].data(), m_quadrant_details[rest].data(),
-                     others * product_floor, tree != nullptr ? -1 : 0};
+    m_views[rest] = {nullptr, nullptr, others * product_floor, tree != nullptr ? -1 : 0};
     m_needs_places = m_needs_places || m_factors[rest]->needs_places();
+  }
+}
+
+/// For nodes and all that their quadrants may become.
+void SynchronousProduct::make_room(std::size_t begin, std::size_t end) {
+  grow(m_product.m_nodes, end);
+  grow(m_parent_slots, end + 4 * (end - begin) + 4);
+  for (std::size_t f = 0; f < m_factors.size(); ++f) {
+    ProductTree::Slots& slots = m_product.m_slots[f];
+    grow(slots.means, 4 * end);
+    grow(slots.details, 4 * end);
+    m_views[f].means = slots.means.data();
+    m_views[f].details = slots.details.data();
   }
 }
 
 /// The root is always a node, even if nothing has detail.
 void SynchronousProduct::start() {
-  m_first_node = 0;
-  m_leaf_count = 0;
-  m_now.make_room(m_factors.size(), 1);
-  m_now.count = 1;
-  m_now.places[0] = {};
+  make_room(0, 1);
+  m_node_count = 1;
+  grow(m_places, 1);
+  m_places[0] = {};
+  m_parent_slots[0] = 0;
   for (std::size_t f = 0; f < m_factors.size(); ++f) {
-    m_now.means[f][0] = m_factors[f]->mean();
-    m_now.details[f][0] = m_factors[f]->root();
-  }
-  grow(m_parent_slots, 1);
-  m_parent_slots[0] = -1;
-}
-
-/// Splits all squares at hand; those of their quadrants that want splitting take their place.
-/// @param level of the quadrants
-/// @return Σ of the new leaves' products
-Float4 SynchronousProduct::split_level(std::int32_t level) {
-  grow(m_product.m_nodes, static_cast<std::size_t>(m_first_node) + m_now.count);
-  m_next.count = 0;
-  detail::ProductRun run;
-  run.factors = m_views;
-  run.level = level;
-  run.splits = level < m_finest_level;
-  Float4 sum = {};
-  for (std::size_t begin = 0; begin < m_now.count; begin += detail::square_run) {
-    run.squares = std::min(detail::square_run, m_now.count - begin);
-    split_run(begin, run);
-    sum += run.leaf_sum;
-  }
-  m_first_node += static_cast<std::int32_t>(m_now.count);
-  std::swap(m_now, m_next);
-  return sum;
-}
-
-void SynchronousProduct::split_run(std::size_t begin, detail::ProductRun& run) {
-  const std::size_t node = static_cast<std::size_t>(m_first_node) + begin;
-  grow(m_product.m_leaves, m_leaf_count + 4 * run.squares);
-  run.first_node = static_cast<std::int32_t>(node);
-  run.next_node = m_first_node + static_cast<std::int32_t>(m_now.count + m_next.count);
-  run.next_leaf = static_cast<std::int32_t>(m_leaf_count);
-  run.nodes = m_product.m_nodes.data() + node;
-  run.leaves = m_product.m_leaves.data() + m_leaf_count;
-  for (std::size_t f = 0; f < m_factors.size(); ++f)
-    m_factors[f]->split({m_now.places.data() + begin, m_now.means[f].data() + begin,
-                         m_now.details[f].data() + begin, run.squares},
+    const Float4 mean = m_factors[f]->mean();
+    const std::uint32_t root = m_factors[f]->root();
+    m_factors[f]->split({m_places.data(), m_parent_slots.data(), &mean, &root, 1},
                         {m_views[f].means, m_views[f].details});
-  detail::finish_run(run);
-  m_leaf_count += run.leaf_count;
-  queue(run);
-  if (m_needs_places)
-    queue_places(begin, run);
-  m_next.count += run.split_count;
-}
-
-/// Puts a run's quadrants that want splitting among the next level's squares.
-void SynchronousProduct::queue(const detail::ProductRun& run) {
-  const std::size_t end = m_next.count + run.split_count;
-  m_next.make_room(m_factors.size(), end);
-  for (std::size_t f = 0; f < m_factors.size(); ++f) {
-    Float4* const means = m_next.means[f].data() + m_next.count;
-    std::uint32_t* const details = m_next.details[f].data() + m_next.count;
-    for (std::size_t i = 0; i < run.split_count; ++i) {
-      const auto quadrant = static_cast<std::size_t>(run.split_quadrants[i]);
-      means[i] = m_views[f].means[quadrant];
-      details[i] = m_views[f].details[quadrant];
-    }
   }
-  grow(m_parent_slots, static_cast<std::size_t>(run.next_node) + run.split_count);
-  std::int32_t* const slots = m_parent_slots.data() + run.next_node;
-  for (std::size_t i = 0; i < run.split_count; ++i)
-    slots[i] = 4 * run.first_node + run.split_quadrants[i];
+  finish(0, 1, 1);
 }
 
-void SynchronousProduct::queue_places(std::size_t begin, const detail::ProductRun& run) {
-  for (std::size_t i = 0; i < run.split_count; ++i) {
-    const auto quadrant = static_cast<std::uint32_t>(run.split_quadrants[i]);
-    const SquarePlace& parent = m_now.places[begin + quadrant / 4];
-    m_next.places[m_next.count + i] = {parent.level + 1, 2 * parent.column + (quadrant & 1U),
-                                       2 * parent.row + (quadrant >> 1U & 1U)};
+/// @param level of the nodes' quadrants
+void SynchronousProduct::split(std::size_t begin, std::size_t end, std::int32_t level) {
+  for (std::size_t f = 0; f < m_factors.size(); ++f)
+    m_factors[f]->split({m_needs_places ? m_places.data() + begin : nullptr,
+                         m_parent_slots.data() + begin, m_views[f].means, m_views[f].details,
+                         end - begin},
+                        {m_views[f].means + 4 * begin, m_views[f].details + 4 * begin});
+  finish(begin, end, level);
+}
+
+void SynchronousProduct::finish(std::size_t begin, std::size_t end, std::int32_t level) {
+  detail::SplitSquares squares;
+  squares.factors = m_views;
+  squares.begin = begin;
+  squares.end = end;
+  squares.may_split = level < m_finest_level;
+  squares.node_count = m_node_count;
+  squares.nodes = m_product.m_nodes.data();
+  squares.parent_slots = m_parent_slots.data();
+  detail::finish(squares);
+  m_node_count = squares.node_count;
+  m_integral += squares.leaf_sum * power_of_two(-2 * level);
+}
+
+void SynchronousProduct::find_places(std::size_t begin, std::size_t end) {
+  grow(m_places, end);
+  for (std::size_t node = begin; node < end; ++node) {
+    const auto slot = static_cast<std::uint32_t>(m_parent_slots[node]);
+    const SquarePlace& parent = m_places[slot / 4];
+    m_places[node] = {parent.level + 1, 2 * parent.column + (slot & 1U),
+                      2 * parent.row + (slot >> 1U & 1U)};
   }
 }
 

@@ -20,11 +20,12 @@ struct SquarePlace {
   std::uint32_t row = 0;
 };
 
-/// Many squares as one factor sees them. `detail` is the factor's own handle on what lies below a
-/// square; no_node says that it is constant there.
+/// Many squares as one factor sees them: square i has the average mean[slot[i]], and detail[slot[i]]
+/// is the factor's own handle on what lies below; no_node says that it is constant there.
 struct FactorSquares {
-  const SquarePlace* place;
-  const Float4* mean; ///< averages, lanes R, G, B, *
+  const SquarePlace* place; ///< by square; nullptr if no factor needs it
+  const std::int32_t* slot;
+  const Float4* mean; ///< lanes R, G, B, *
   const std::uint32_t* detail;
   std::size_t count;
 };

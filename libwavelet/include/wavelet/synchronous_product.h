@@ -10,15 +10,13 @@
 namespace haarlight::wavelet {
 namespace detail {
 
-/// One factor of a product, over some squares' quadrants.
+/// One factor of a product. Arrays go by slot: 4 × product node + quadrant.
 struct ProductFactor {
-  Float4* means;
-  std::uint32_t* details; ///< its handles
+  Float4* means;          ///< over the quadrants, lanes R, G, B, *
+  std::uint32_t* details; ///< its handles on them
   Float4 floor;           ///< of the product of the others, in the density
   std::int32_t is_tree;   ///< 0 or −1: what is left may be left to it
 };
-
-struct ProductRun;
 
 } // namespace detail
 
@@ -35,34 +33,24 @@ public:
   const ProductTree& build(std::span<const Factor* const> factors, int finest_level = 15);
 
 private:
-  /// Squares of a level that are about to be split, as every factor sees them. Arrays never shrink.
-  struct Frontier {
-    std::size_t count = 0;
-    std::vector<SquarePlace> places;
-    std::vector<std::vector<Float4>> means; ///< by factor
-    std::vector<std::vector<std::uint32_t>> details;
-
-    void make_room(std::size_t factors, std::size_t squares);
-  };
+  /// Nodes that are split together: few enough that they stay in the cache.
+  static constexpr std::size_t run = 32;
 
   void look_at_factors();
+  void make_room(std::size_t begin, std::size_t end);
   void start();
-  Float4 split_level(std::int32_t level);
-  void split_run(std::size_t begin, detail::ProductRun& run);
-  void queue(const detail::ProductRun& run);
-  void queue_places(std::size_t begin, const detail::ProductRun& run);
+  void split(std::size_t begin, std::size_t end, std::int32_t level);
+  void finish(std::size_t begin, std::size_t end, std::int32_t level);
+  void find_places(std::size_t begin, std::size_t end);
 
   std::span<const Factor* const> m_factors;
   int m_finest_level = 0;
   bool m_needs_places = false;
-  Frontier m_now;
-  Frontier m_next;
-  std::int32_t m_first_node = 0; ///< product node of m_now's first square
-  std::size_t m_leaf_count = 0;
-  std::vector<std::vector<Float4>> m_quadrant_means;
-  std::vector<std::vector<std::uint32_t>> m_quadrant_details;
+  std::size_t m_node_count = 0;
+  Float4 m_integral = {};
   std::vector<detail::ProductFactor> m_views;
-  std::vector<std::int32_t> m_parent_slots;
+  std::vector<std::int32_t> m_parent_slots; ///< by node
+  std::vector<SquarePlace> m_places;        ///< by node, if a factor needs them
   ProductTree m_product;
 };
 
