@@ -60,10 +60,70 @@ unsigned signs(Int4 v) {
 #endif
 }
 
-/// Differences of a node as they are seen.
-Details turned(const Details& d, const TreeTurn& turn) {
-  const Details swapped = turn.swaps ? Details{d.d2, d.d1, d.d3} : d;
-  return {swapped.d1 * turn.sign_x, swapped.d2 * turn.sign_y, d.d3 * (turn.sign_x * turn.sign_y)};
+/// Differences of a tree's nodes as they are seen.
+struct TurnedDetails {
+  TreeView tree;
+  TreeTurn turn;
+
+  Details operator()(std::uint32_t node) const {
+    const Details d = tree.details(node);
+    return {(turn.swaps ? d.d2 : d.d1) * turn.sign_x, (turn.swaps ? d.d1 : d.d2) * turn.sign_y,
+            d.d3 * (turn.sign_x * turn.sign_y)};
+  }
+};
+
+/// The same of RGB halves, the common case.
+class TurnedHalves {
+public:
+  /// Whether the unit of a tree's halves can be joined with its scale.
+  static bool suits(const TreeView& tree) {
+    return tree.channels == 3 && tree.type == CoefficientType::Half && tree.scale < 0x1p15F;
+  }
+
+  TurnedHalves(const TreeView& tree, const TreeTurn& turn)
+      : m_x(tree.coefficients + (turn.swaps ? 6 : 0)),
+        m_y(tree.coefficients + (turn.swaps ? 0 : 6)), m_xy(tree.coefficients + 12) {
+    const Float4 unit = Float4{1, 1, 1, 0} * (tree.scale * half_unit);
+    m_unit_x = unit * turn.sign_x;
+    m_unit_y = unit * turn.sign_y;
+    m_unit_xy = m_unit_x * turn.sign_y;
+  }
+
+  Details operator()(std::uint32_t node) const {
+    const std::size_t offset = std::size_t{18} * node;
+    return {small_floats(m_x + offset) * m_unit_x, small_floats(m_y + offset) * m_unit_y,
+            small_floats(m_xy + offset) * m_unit_xy};
+  }
+
+private:
+  const std::byte* m_x; ///< where the first node's differences lie
+  const std::byte* m_y;
+  const std::byte* m_xy;
+  Float4 m_unit_x, m_unit_y, m_unit_xy;
+};
+
+template <class DetailsOf>
+void split_tree(const DetailsOf& details_of, const std::uint32_t* links, Int4 stored,
+                const FactorSquares& squares, const FactorQuadrants& out) {
+  const FactorSquares in = squares;
+  Float4* means = out.mean;
+  std::uint32_t* details = out.detail;
+  for (std::size_t i = 0; i < in.count; ++i, means += 4, details += 4) {
+    const auto slot = static_cast<std::size_t>(in.slot[i]);
+    const std::uint32_t node = in.detail[slot];
+    if (node == no_node) {
+      std::fill_n(means, 4, in.mean[slot]);
+      std::fill_n(details, 4, no_node);
+      continue;
+    }
+    const auto children = details_of(node).children(in.mean[slot]);
+    for (std::size_t q = 0; q < 4; ++q)
+      means[q] = children[q];
+    const std::uint32_t set = links[node] & 15U;
+    const Int4 nodes =
+        (sets.rank[set] + static_cast<std::int32_t>(links[node] >> 4U)) | sets.absent[set];
+    store(details, __builtin_shuffle(nodes, stored));
+  }
 }
 
 /// Quadrants of a node over which some factor is 0 throughout.
@@ -79,51 +139,52 @@ Int4 vanishing(const SplitSquares& squares, std::size_t node) {
   return result;
 }
 
-/// The last factor that has detail.
-std::size_t factor_left(const SplitSquares& squares, std::size_t slot) {
-  std::size_t left = squares.factors.size() - 1;
-  while (left > 0 && squares.factors[left].details[slot] == no_node)
-    --left;
-  return left;
-}
-
 /// Which of a node's quadrants want splitting. Handles on what is left of the others vanish unless
 /// they belong to the one tree that has detail there.
-/// @tparam count of factors, or 0: any
-template <std::size_t count>
-Int4 find_splits(const SplitSquares& squares, std::size_t node) {
-  const std::size_t factors = count > 0 ? count : squares.factors.size();
-  Int4 constant_factors = {};
-  Int4 non_trees = {};
-  for (std::size_t f = 0; f < factors; ++f) {
-    const Int4 constant = load<Int4>(squares.factors[f].details + 4 * node) == -1;
-    constant_factors -= constant;
-    non_trees |= ~(constant | squares.factors[f].is_tree);
-  }
-  const auto all = static_cast<std::int32_t>(factors);
-  const Int4 ends =
-      (constant_factors == all) | ((constant_factors == all - 1) & (non_trees == 0));
-  Int4 splits = squares.may_split ? ~ends : Int4{};
-  if (signs(splits & (constant_factors > 0)) != 0)
-    splits &= ~vanishing(squares, node);
-  const Int4 cut = ~(ends | splits);
-  if (signs(cut) != 0)
-    for (const ProductFactor& factor : squares.factors)
-      store(factor.details + 4 * node, load<Int4>(factor.details + 4 * node) | cut);
-  return splits;
-}
+struct SplitsOfAny {
+  const SplitSquares& squares;
 
-template <std::size_t count>
-void name_children(SplitSquares& squares) {
+  Int4 operator()(std::size_t node) const {
+    Int4 constant_factors = {};
+    Int4 non_trees = {};
+    for (const ProductFactor& factor : squares.factors) {
+      const Int4 constant = load<Int4>(factor.details + 4 * node) == -1;
+      constant_factors -= constant;
+      non_trees |= ~(constant | factor.is_tree);
+    }
+    const auto all = static_cast<std::int32_t>(squares.factors.size());
+    const Int4 ends =
+        (constant_factors == all) | ((constant_factors == all - 1) & (non_trees == 0));
+    const Int4 splits = squares.may_split ? ~(ends | vanishing(squares, node)) : Int4{};
+    for (const ProductFactor& factor : squares.factors)
+      store(factor.details + 4 * node,
+            load<Int4>(factor.details + 4 * node) | ~(ends | splits));
+    return splits;
+  }
+};
+
+/// The same of two trees.
+struct SplitsOfTwoTrees {
+  const std::uint32_t* first;
+  const std::uint32_t* second;
+
+  Int4 operator()(std::size_t node) const {
+    return (load<Int4>(first + 4 * node) != -1) & (load<Int4>(second + 4 * node) != -1);
+  }
+};
+
+template <class SplitsOf>
+void name_children(SplitSquares& squares, const SplitsOf& splits_of) {
   std::size_t node_count = squares.node_count;
-  for (std::size_t node = squares.begin; node < squares.end; ++node) {
-    const Int4 splits = find_splits<count>(squares, node);
+  ProductNode* const nodes = squares.nodes;
+  std::int32_t* const parent_slots = squares.parent_slots;
+  for (std::size_t node = squares.begin, end = squares.end; node < end; ++node) {
+    const Int4 splits = splits_of(node);
     const unsigned set = signs(splits);
-    const Int4 slots = Int4{0, 1, 2, 3} + static_cast<std::int32_t>(4 * node);
-    const Int4 nodes = sets.rank[set] + static_cast<std::int32_t>(node_count);
-    store(squares.nodes[node].child, splits ? nodes : ~slots);
-    store(squares.parent_slots + node_count,
-          sets.members[set] + static_cast<std::int32_t>(4 * node));
+    const auto slot = static_cast<std::int32_t>(4 * node);
+    const Int4 child = sets.rank[set] + static_cast<std::int32_t>(node_count);
+    store(nodes[node].child, splits ? child : Int4{~0, ~1, ~2, ~3} - slot);
+    store(parent_slots + node_count, sets.members[set] + slot);
     node_count += bits_of_nibble(set);
   }
   squares.node_count = node_count;
@@ -173,6 +234,14 @@ void weigh_pairs(SplitSquares& squares) {
   squares.leaf_sum += Float4{lane_sum(r), lane_sum(g), lane_sum(b), 0};
 }
 
+/// The last factor that has detail.
+std::size_t factor_left(const SplitSquares& squares, std::size_t slot) {
+  std::size_t left = squares.factors.size() - 1;
+  while (left > 0 && squares.factors[left].details[slot] == no_node)
+    --left;
+  return left;
+}
+
 void weigh_any(SplitSquares& squares) {
   for (std::size_t slot = 4 * squares.begin; slot < 4 * squares.end; ++slot) {
     ProductNode& node = squares.nodes[slot / 4];
@@ -192,40 +261,25 @@ void weigh_any(SplitSquares& squares) {
 
 } // namespace
 
-HAARLIGHT_CPU_CLONES void split_tree(const TreeView& view, const TreeTurn& turn,
+HAARLIGHT_CPU_CLONES void split_tree(const TreeView& tree, const TreeTurn& turn,
                                      const FactorSquares& squares, const FactorQuadrants& out) {
-  const TreeView tree = view;
-  const TreeTurn t = turn;
-  const FactorSquares in = squares;
-  Float4* means = out.mean;
-  std::uint32_t* details = out.detail;
-  for (std::size_t i = 0; i < in.count; ++i, means += 4, details += 4) {
-    const auto slot = static_cast<std::size_t>(in.slot[i]);
-    const std::uint32_t node = in.detail[slot];
-    if (node == no_node) {
-      std::fill_n(means, 4, in.mean[slot]);
-      std::fill_n(details, 4, no_node);
-      continue;
-    }
-    const auto children = turned(tree.details(node), t).children(in.mean[slot]);
-    for (std::size_t q = 0; q < 4; ++q)
-      means[q] = children[q];
-    const std::uint32_t link = tree.links[node];
-    const std::uint32_t set = link & 15U;
-    const Int4 nodes =
-        (sets.rank[set] + static_cast<std::int32_t>(link >> 4U)) | sets.absent[set];
-    store(details, __builtin_shuffle(nodes, t.stored));
-  }
+  if (TurnedHalves::suits(tree))
+    split_tree(TurnedHalves(tree, turn), tree.links, turn.stored, squares, out);
+  else
+    split_tree(TurnedDetails{tree, turn}, tree.links, turn.stored, squares, out);
 }
 
 HAARLIGHT_CPU_CLONES void finish(SplitSquares& squares) {
-  if (squares.factors.size() == 2) {
-    name_children<2>(squares);
+  const std::span<const ProductFactor> factors = squares.factors;
+  if (factors.size() == 2 && factors[0].is_tree != 0 && factors[1].is_tree != 0 &&
+      squares.may_split)
+    name_children(squares, SplitsOfTwoTrees{factors[0].details, factors[1].details});
+  else
+    name_children(squares, SplitsOfAny{squares});
+  if (factors.size() == 2)
     weigh_pairs(squares);
-  } else {
-    name_children<0>(squares);
+  else
     weigh_any(squares);
-  }
 }
 
 } // namespace haarlight::wavelet::detail

@@ -23,16 +23,15 @@ struct ProductNode {
   std::int32_t child[4] = {-1, -1, -1, -1};
 };
 
-/// A square on which all factors but one count as constant. Columns and rows count squares of the
-/// leaf's level.
+/// A square on which all factors but one count as constant.
 struct ProductLeaf {
-  Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, 0
+  Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, *
   Float4 reflectance = {};      ///< product of the others' averages, lanes R, G, B
   std::uint32_t node = no_node; ///< in the tree of the factor that is left
   std::int32_t slot = -1;       ///< 4 × its parent's product node + quadrant
-  std::uint16_t x = 0, y = 0;
-  std::uint8_t level = 0;
-  std::uint8_t rest = 0; ///< which factor is left
+  std::uint16_t x = 0, y = 0;   ///< in squares of its level; adaptive products alone know these
+  std::uint8_t level = 0;       ///< likewise
+  std::uint8_t rest = 0;        ///< which factor is left
 };
 static_assert(sizeof(ProductLeaf) == 48);
 
