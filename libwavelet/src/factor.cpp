@@ -8,16 +8,15 @@
 
 namespace haarlight::wavelet {
 
-detail::TreeTurn::TreeTurn(const SquareSymmetry& symmetry) {
-  for (unsigned q = 0; q < 4; ++q)
-    stored[q] = static_cast<std::int32_t>(symmetry.to_stored(q));
-  swaps = (stored[0] ^ stored[1]) == 2;
-  sign_x = (stored[0] & (swaps ? 2 : 1)) == 0 ? 1.0F : -1.0F;
-  sign_y = (stored[0] & (swaps ? 1 : 2)) == 0 ? 1.0F : -1.0F;
-}
+detail::TreeTurn::TreeTurn(const SquareSymmetry& symmetry)
+    : stored{symmetry.to_stored(0U), symmetry.to_stored(1U), symmetry.to_stored(2U),
+             symmetry.to_stored(3U)},
+      plain(symmetry.turns == 0 && !symmetry.mirrored), swaps((stored[0] ^ stored[1]) == 2),
+      sign_x((stored[0] & (swaps ? 2U : 1U)) == 0 ? 1.0F : -1.0F),
+      sign_y((stored[0] & (swaps ? 1U : 2U)) == 0 ? 1.0F : -1.0F) {}
 
 TreeFactor::TreeFactor(const TreeView& view, const SquareSymmetry& symmetry)
-    : m_view(view), m_turn(symmetry), m_plain(symmetry.turns == 0 && !symmetry.mirrored) {}
+    : m_view(view), m_turn(symmetry) {}
 
 void TreeFactor::split(const FactorSquares& squares, const FactorQuadrants& out) const {
   detail::split_tree(m_view, m_turn, squares, out);

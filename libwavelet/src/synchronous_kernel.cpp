@@ -3,6 +3,7 @@
 #include <wavelet/cpu_clones.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace haarlight::wavelet::detail {
@@ -10,8 +11,8 @@ namespace {
 
 /// For every set of quadrants, as bits.
 struct QuadrantSets {
-  Int4 rank[16];   ///< of each quadrant, how many before it are in the set
-  Int4 absent[16]; ///< −1 where a quadrant is not in the set
+  Int4 rank[16];    ///< of each quadrant, how many before it are in the set
+  Int4 absent[16];  ///< −1 where a quadrant is not in the set
   Int4 members[16]; ///< those in the set, one after the other
 };
 
@@ -103,7 +104,7 @@ private:
 };
 
 template <class DetailsOf>
-void split_tree(const DetailsOf& details_of, const std::uint32_t* links, Int4 stored,
+void split_tree(const DetailsOf& details_of, const std::uint32_t* links, const TreeTurn& turn,
                 const FactorSquares& squares, const FactorQuadrants& out) {
   const FactorSquares in = squares;
   Float4* means = out.mean;
@@ -122,7 +123,11 @@ void split_tree(const DetailsOf& details_of, const std::uint32_t* links, Int4 st
     const std::uint32_t set = links[node] & 15U;
     const Int4 nodes =
         (sets.rank[set] + static_cast<std::int32_t>(links[node] >> 4U)) | sets.absent[set];
-    store(details, __builtin_shuffle(nodes, stored));
+    if (turn.plain)
+      store(details, nodes);
+    else
+      for (std::size_t q = 0; q < 4; ++q)
+        details[q] = static_cast<std::uint32_t>(nodes[turn.stored[q]]);
   }
 }
 
@@ -157,8 +162,7 @@ struct SplitsOfAny {
         (constant_factors == all) | ((constant_factors == all - 1) & (non_trees == 0));
     const Int4 splits = squares.may_split ? ~(ends | vanishing(squares, node)) : Int4{};
     for (const ProductFactor& factor : squares.factors)
-      store(factor.details + 4 * node,
-            load<Int4>(factor.details + 4 * node) | ~(ends | splits));
+      store(factor.details + 4 * node, load<Int4>(factor.details + 4 * node) | ~(ends | splits));
     return splits;
   }
 };
@@ -218,13 +222,12 @@ void weigh_pairs(SplitSquares& squares) {
     const Colours x(first.means + 4 * node);
     const Colours y(second.means + 4 * node);
     const Int4 second_left = load<Int4>(second.details + 4 * node) != -1;
-    const Float4 weights =
-        floored_product(x.r, y.r, second_left, first.floor[0], second.floor[0]) *
-            luminance_lanes[0] +
-        floored_product(x.g, y.g, second_left, first.floor[1], second.floor[1]) *
-            luminance_lanes[1] +
-        floored_product(x.b, y.b, second_left, first.floor[2], second.floor[2]) *
-            luminance_lanes[2];
+    const Float4 weights = floored_product(x.r, y.r, second_left, first.floor[0], second.floor[0]) *
+                               luminance_lanes[0] +
+                           floored_product(x.g, y.g, second_left, first.floor[1], second.floor[1]) *
+                               luminance_lanes[1] +
+                           floored_product(x.b, y.b, second_left, first.floor[2], second.floor[2]) *
+                               luminance_lanes[2];
     squares.nodes[node].weights = larger(weights, Float4{});
     const Int4 leaf = load<Int4>(squares.nodes[node].child) < 0;
     r += select(leaf, x.r * y.r, Float4{});
@@ -264,9 +267,9 @@ void weigh_any(SplitSquares& squares) {
 HAARLIGHT_CPU_CLONES void split_tree(const TreeView& tree, const TreeTurn& turn,
                                      const FactorSquares& squares, const FactorQuadrants& out) {
   if (TurnedHalves::suits(tree))
-    split_tree(TurnedHalves(tree, turn), tree.links, turn.stored, squares, out);
+    split_tree(TurnedHalves(tree, turn), tree.links, turn, squares, out);
   else
-    split_tree(TurnedDetails{tree, turn}, tree.links, turn.stored, squares, out);
+    split_tree(TurnedDetails{tree, turn}, tree.links, turn, squares, out);
 }
 
 HAARLIGHT_CPU_CLONES void finish(SplitSquares& squares) {

@@ -8,6 +8,7 @@
 #include <wavelet/symmetry.h>
 #include <wavelet/tree.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,8 +21,9 @@ struct SquarePlace {
   std::uint32_t row = 0;
 };
 
-/// Many squares as one factor sees them: square i has the average mean[slot[i]], and detail[slot[i]]
-/// is the factor's own handle on what lies below; no_node says that it is constant there.
+/// Many squares as one factor sees them: square i has the average mean[slot[i]], and
+/// detail[slot[i]] is the factor's own handle on what lies below; no_node says that it is constant
+/// there.
 struct FactorSquares {
   const SquarePlace* place; ///< by square; nullptr if no factor needs it
   const std::int32_t* slot;
@@ -60,9 +62,10 @@ namespace detail {
 
 /// How a symmetry of the square moves a node's quadrants and differences.
 struct TreeTurn {
-  Int4 stored;          ///< the stored quadrant that stands for each
-  float sign_x, sign_y; ///< of the differences along x and y, as they are seen
-  bool swaps;           ///< differences along x are stored along y
+  std::array<unsigned, 4> stored; ///< the stored quadrant that stands for each
+  bool plain;                     ///< which is the quadrant itself
+  bool swaps;                     ///< differences along x are stored along y
+  float sign_x, sign_y;           ///< of the differences along x and y, as they are seen
 
   explicit TreeTurn(const SquareSymmetry& symmetry);
 };
@@ -79,12 +82,11 @@ public:
   std::uint32_t root() const override { return m_view.root(); }
   void split(const FactorSquares& squares, const FactorQuadrants& out) const override;
   bool needs_places() const override { return false; }
-  const TreeView* tree() const override { return m_plain ? &m_view : nullptr; }
+  const TreeView* tree() const override { return m_turn.plain ? &m_view : nullptr; }
 
 private:
   TreeView m_view;
   detail::TreeTurn m_turn;
-  bool m_plain;
 };
 
 /// The same everywhere.

@@ -17,8 +17,8 @@ inline Float4 small_floats(const void* four_halves) {
   std::uint64_t raw = 0;
   std::memcpy(&raw, four_halves, sizeof raw);
   const auto halves = std::bit_cast<Short8>(Long2{raw, 0});
-  const auto upper = std::bit_cast<Int4>(
-      __builtin_shufflevector(Short8{}, halves, 0, 8, 1, 9, 2, 10, 3, 11));
+  const auto upper =
+      std::bit_cast<Int4>(__builtin_shufflevector(Short8{}, halves, 0, 8, 1, 9, 2, 10, 3, 11));
   // The shift leaves three copies of the sign.
   return std::bit_cast<Float4>((upper >> 3) & static_cast<std::int32_t>(0x8fffffffU));
 }
