@@ -131,16 +131,24 @@ void split_tree(const DetailsOf& details_of, const std::uint32_t* links, const T
   }
 }
 
+/// Four quadrants, channel by channel.
+struct Colours {
+  Float4 r, g, b;
+
+  explicit Colours(const Float4* means) : r(means[0]), g(means[1]), b(means[2]) {
+    Float4 rest = means[3];
+    transpose(r, g, b, rest);
+  }
+};
+
 /// Quadrants of a node over which some factor is 0 throughout.
 Int4 vanishing(const SplitSquares& squares, std::size_t node) {
   Int4 result = {};
-  for (const ProductFactor& factor : squares.factors)
-    for (int q = 0; q < 4; ++q) {
-      const std::size_t slot = 4 * node + static_cast<std::size_t>(q);
-      const Float4 mean = factor.means[slot];
-      if (factor.details[slot] == no_node && mean[0] == 0 && mean[1] == 0 && mean[2] == 0)
-        result[q] = -1;
-    }
+  for (const ProductFactor& factor : squares.factors) {
+    const Colours mean(factor.means + 4 * node);
+    const Int4 constant = load<Int4>(factor.details + 4 * node) == -1;
+    result |= constant & (mean.r == 0) & (mean.g == 0) & (mean.b == 0);
+  }
   return result;
 }
 
@@ -161,8 +169,10 @@ struct SplitsOfAny {
     const Int4 ends =
         (constant_factors == all) | ((constant_factors == all - 1) & (non_trees == 0));
     const Int4 splits = squares.may_split ? ~(ends | vanishing(squares, node)) : Int4{};
-    for (const ProductFactor& factor : squares.factors)
-      store(factor.details + 4 * node, load<Int4>(factor.details + 4 * node) | ~(ends | splits));
+    const Int4 cut = ~(ends | splits);
+    if (signs(cut) != 0)
+      for (const ProductFactor& factor : squares.factors)
+        store(factor.details + 4 * node, load<Int4>(factor.details + 4 * node) | cut);
     return splits;
   }
 };
@@ -193,16 +203,6 @@ void name_children(SplitSquares& squares, const SplitsOf& splits_of) {
   }
   squares.node_count = node_count;
 }
-
-/// Four quadrants, channel by channel.
-struct Colours {
-  Float4 r, g, b;
-
-  explicit Colours(const Float4* means) : r(means[0]), g(means[1]), b(means[2]) {
-    Float4 rest = means[3];
-    transpose(r, g, b, rest);
-  }
-};
 
 /// One channel's share in the density: the factor that is left times the other or its floor.
 Float4 floored_product(Float4 first, Float4 second, Int4 second_left, float first_floor,

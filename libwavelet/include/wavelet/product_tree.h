@@ -111,7 +111,11 @@ private:
   float mean() const { return 0.25F * lane_sum(m_nodes[0].weights); }
 
   TreeDensity density(std::int32_t child) const {
-    const ProductLeaf l = leaf(child);
+    return m_leaves.empty() ? density(leaf_at_slot(~child))
+                            : density(m_leaves[static_cast<std::size_t>(~child)]);
+  }
+
+  TreeDensity density(const ProductLeaf& l) const {
     const Rest& rest = m_rests[l.rest];
     const Float4 weights = larger(l.reflectance, rest.floor) * luminance_lanes;
     return {&rest.tree, l.node, lane_sum(l.light * weights), weights};
