@@ -1,34 +1,25 @@
 #include <wavelet/factor.h>
 
+#include "synchronous_kernel.h"
+
 #include <wavelet/sphere_map.h>
 
 #include <algorithm>
 
 namespace haarlight::wavelet {
 
+detail::TreeTurn::TreeTurn(const SquareSymmetry& symmetry)
+    : stored{symmetry.to_stored(0U), symmetry.to_stored(1U), symmetry.to_stored(2U),
+             symmetry.to_stored(3U)},
+      plain(symmetry.turns == 0 && !symmetry.mirrored), swaps((stored[0] ^ stored[1]) == 2),
+      sign_x((stored[0] & (swaps ? 2U : 1U)) == 0 ? 1.0F : -1.0F),
+      sign_y((stored[0] & (swaps ? 1U : 2U)) == 0 ? 1.0F : -1.0F) {}
+
 TreeFactor::TreeFactor(const TreeView& view, const SquareSymmetry& symmetry)
-    : m_view(view), m_plain(symmetry.turns == 0 && !symmetry.mirrored) {
-  for (unsigned q = 0; q < 4; ++q)
-    m_stored[q] = symmetry.to_stored(q);
-}
+    : m_view(view), m_turn(symmetry) {}
 
 void TreeFactor::split(const FactorSquares& squares, const FactorQuadrants& out) const {
-  for (std::size_t i = 0; i < squares.count; ++i) {
-    Float4* mean = out.mean + 4 * i;
-    std::uint32_t* detail = out.detail + 4 * i;
-    const std::uint32_t node = squares.detail[i];
-    if (node == no_node) {
-      std::fill_n(mean, 4, squares.mean[i]);
-      std::fill_n(detail, 4, no_node);
-      continue;
-    }
-    const auto means = m_view.details(node).children(squares.mean[i]);
-    const auto nodes = m_view.children(node);
-    for (unsigned q = 0; q < 4; ++q) {
-      mean[q] = means[m_stored[q]];
-      detail[q] = nodes[m_stored[q]];
-    }
-  }
+  detail::split_tree(m_view, m_turn, squares, out);
 }
 
 void ConstantFactor::split(const FactorSquares& squares, const FactorQuadrants& out) const {

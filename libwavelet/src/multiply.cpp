@@ -65,14 +65,8 @@ private:
     m_mean = to_rgb(mean_of(0));
   }
 
-  /// The leaf ~child.
-  const ProductLeaf& leaf_of(std::int32_t child) const {
-    const std::int32_t index = ~child;
-    return m_product.leaves()[static_cast<std::size_t>(index)];
-  }
-
   Float4 average_of_leaf(std::int32_t child) const {
-    const ProductLeaf& leaf = leaf_of(child);
+    const ProductLeaf leaf = m_product.leaf(child);
     return leaf.light * leaf.reflectance;
   }
 
@@ -130,7 +124,7 @@ private:
         add_child(index, q, walk_item(child));
         continue;
       }
-      const ProductLeaf& leaf = leaf_of(child);
+      const ProductLeaf leaf = m_product.leaf(child);
       if (leaf.node != no_node)
         add_child(index, q, tree_item(leaf.rest, leaf.node, leaf.reflectance));
     }

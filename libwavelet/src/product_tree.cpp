@@ -5,10 +5,30 @@
 namespace haarlight::wavelet {
 
 Rgb ProductTree::integral() const {
+  if (m_integral)
+    return *m_integral;
   Float4 sum = {};
   for (const ProductLeaf& leaf : m_leaves)
     sum += leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
   return to_rgb(sum);
+}
+
+/// The last factor that has detail is what is left.
+ProductLeaf ProductTree::leaf_at_slot(std::int32_t slot) const {
+  const auto i = static_cast<std::size_t>(slot);
+  std::size_t rest = m_slots.size() - 1;
+  while (rest > 0 && m_slots[rest].details[i] == no_node)
+    --rest;
+  ProductLeaf leaf;
+  leaf.reflectance = Float4{1, 1, 1, 0};
+  for (std::size_t f = 0; f < m_slots.size(); ++f)
+    if (f != rest)
+      leaf.reflectance *= m_slots[f].means[i];
+  leaf.light = m_slots[rest].means[i];
+  leaf.node = m_slots[rest].details[i];
+  leaf.slot = slot;
+  leaf.rest = static_cast<std::uint8_t>(rest);
+  return leaf;
 }
 
 void ProductTree::sum_upwards(const std::vector<std::int32_t>& parent_slots) {
@@ -19,7 +39,7 @@ void ProductTree::sum_upwards(const std::vector<std::int32_t>& parent_slots) {
   }
 }
 
-/// Leads a descent to a leaf. @return its index
+/// Leads a descent to a leaf. @return the child that names it
 std::int32_t ProductTree::descend_nodes(Descent& d) const {
   std::int32_t next = 0;
   while (next >= 0) {
@@ -29,15 +49,14 @@ std::int32_t ProductTree::descend_nodes(Descent& d) const {
     d.pdf = node.weights[q]; // a node's mean is its parent's weight: only the last one counts
   }
   d.pdf /= mean();
-  return ~next;
+  return next;
 }
 
 Descent ProductTree::sample(float u1, float u2) const {
   Descent d;
   d.u1 = u1;
   d.u2 = u2;
-  const std::int32_t leaf = descend_nodes(d);
-  descend_tree(density(leaf), d);
+  descend_tree(density(descend_nodes(d)), d);
   return d;
 }
 
@@ -70,7 +89,7 @@ float ProductTree::pdf(float u, float v) const {
       return 0;
   }
   d.pdf /= mean();
-  follow_tree(density(~next), u, v, d);
+  follow_tree(density(next), u, v, d);
   return d.pdf;
 }
 

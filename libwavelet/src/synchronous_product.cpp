@@ -1,5 +1,7 @@
 #include <wavelet/synchronous_product.h>
 
+#include "synchronous_kernel.h"
+
 #include <algorithm>
 #include <cassert>
 
@@ -10,149 +12,120 @@ namespace {
 /// thresholding may have lost what a square once held.
 constexpr float product_floor = 0.005F;
 
-bool vanishes(Float4 mean) { return mean[0] == 0 && mean[1] == 0 && mean[2] == 0; }
+template <class T>
+void grow(std::vector<T>& array, std::size_t size) {
+  if (array.size() < size)
+    array.resize(size);
+}
 
 } // namespace
-
-void SynchronousProduct::Frontier::clear(std::size_t factors) {
-  places.clear();
-  means.resize(factors);
-  details.resize(factors);
-  for (std::size_t f = 0; f < factors; ++f) {
-    means[f].clear();
-    details[f].clear();
-  }
-}
 
 const ProductTree& SynchronousProduct::build(std::span<const Factor* const> factors,
                                              int finest_level) {
   assert(!factors.empty() && factors.size() < 256 && finest_level >= 1 && finest_level <= 30);
   m_factors = factors;
   m_finest_level = finest_level;
-  m_product.m_nodes.clear();
-  m_product.m_leaves.clear();
-  m_parent_slots.clear();
-  m_quadrant_means.resize(factors.size(), std::vector<Float4>(4 * run));
-  m_quadrant_details.resize(factors.size(), std::vector<std::uint32_t>(4 * run));
-  choose_floors();
+  m_integral = Float4{};
+  look_at_factors();
   start();
-  while (!m_now.places.empty()) {
-    m_next.clear(factors.size());
-    for (std::size_t begin = 0; begin < m_now.places.size(); begin += run)
-      split_run(begin, std::min(run, m_now.places.size() - begin));
-    m_first_node += static_cast<std::int32_t>(m_now.places.size());
-    std::swap(m_now, m_next);
+  std::size_t begin = 1;
+  for (std::int32_t level = 2; begin < m_node_count; ++level) {
+    const std::size_t end = m_node_count;
+    make_room(begin, end);
+    if (m_needs_places)
+      find_places(begin, end);
+    for (; begin < end; begin = std::min(begin + run, end))
+      split(begin, std::min(begin + run, end), level);
   }
-  m_product.m_leaves.resize(m_leaf_count);
-  m_product.m_leaf_count = m_leaf_count;
+  for (ProductTree::Slots& slots : m_product.m_slots) {
+    slots.means.resize(4 * m_node_count);
+    slots.details.resize(4 * m_node_count);
+  }
+  m_product.m_nodes.resize(m_node_count);
+  m_product.m_leaf_count = 3 * m_node_count + 1;
+  m_product.m_integral = to_rgb(m_integral);
   m_product.sum_upwards(m_parent_slots);
   return m_product;
 }
 
-void SynchronousProduct::choose_floors() {
+void SynchronousProduct::look_at_factors() {
   m_product.m_rests.resize(m_factors.size());
-  m_is_tree.resize(m_factors.size());
+  m_product.m_slots.resize(m_factors.size());
+  m_views.resize(m_factors.size());
+  m_needs_places = false;
   for (std::size_t rest = 0; rest < m_factors.size(); ++rest) {
     Float4 others = {1, 1, 1, 0};
     for (std::size_t f = 0; f < m_factors.size(); ++f)
       if (f != rest)
         others *= absolute(m_factors[f]->mean());
     const TreeView* tree = m_factors[rest]->tree();
-    m_is_tree[rest] = tree != nullptr ? 1 : 0;
     m_product.m_rests[rest] = {tree != nullptr ? *tree : TreeView{}, others * product_floor};
+    m_views[rest] = {nullptr, nullptr, others * product_floor, tree != nullptr ? -1 : 0};
+    m_needs_places = m_needs_places || m_factors[rest]->needs_places();
+  }
+}
+
+/// For nodes and all that their quadrants may become.
+void SynchronousProduct::make_room(std::size_t begin, std::size_t end) {
+  grow(m_product.m_nodes, end);
+  grow(m_parent_slots, end + 4 * (end - begin) + 4);
+  for (std::size_t f = 0; f < m_factors.size(); ++f) {
+    ProductTree::Slots& slots = m_product.m_slots[f];
+    grow(slots.means, 4 * end);
+    grow(slots.details, 4 * end);
+    m_views[f].means = slots.means.data();
+    m_views[f].details = slots.details.data();
   }
 }
 
 /// The root is always a node, even if nothing has detail.
 void SynchronousProduct::start() {
-  m_first_node = 0;
-  m_leaf_count = 0;
-  m_now.clear(m_factors.size());
-  m_now.places.push_back({});
+  make_room(0, 1);
+  m_node_count = 1;
+  grow(m_places, 1);
+  m_places[0] = {};
+  m_parent_slots[0] = 0;
   for (std::size_t f = 0; f < m_factors.size(); ++f) {
-    m_now.means[f].push_back(m_factors[f]->mean());
-    m_now.details[f].push_back(m_factors[f]->root());
+    const Float4 mean = m_factors[f]->mean();
+    const std::uint32_t root = m_factors[f]->root();
+    m_factors[f]->split({m_places.data(), m_parent_slots.data(), &mean, &root, 1},
+                        {m_views[f].means, m_views[f].details});
   }
-  m_product.m_nodes.emplace_back();
-  m_parent_slots.push_back(-1);
+  finish(0, 1, 1);
 }
 
-void SynchronousProduct::split_run(std::size_t begin, std::size_t count) {
-  m_product.m_leaves.resize(m_leaf_count + 4 * count);
+/// @param level of the nodes' quadrants
+void SynchronousProduct::split(std::size_t begin, std::size_t end, std::int32_t level) {
   for (std::size_t f = 0; f < m_factors.size(); ++f)
-    m_factors[f]->split({m_now.places.data() + begin, m_now.means[f].data() + begin,
-                         m_now.details[f].data() + begin, count},
-                        {m_quadrant_means[f].data(), m_quadrant_details[f].data()});
-  for (std::size_t i = 0; i < count; ++i)
-    if (m_factors.size() == 2)
-      combine<2>(begin + i, i);
-    else
-      combine<0>(begin + i, i);
+    m_factors[f]->split({m_needs_places ? m_places.data() + begin : nullptr,
+                         m_parent_slots.data() + begin, m_views[f].means, m_views[f].details,
+                         end - begin},
+                        {m_views[f].means + 4 * begin, m_views[f].details + 4 * begin});
+  finish(begin, end, level);
 }
 
-/// Makes a node or a leaf of each quadrant of a square. @tparam Factors how many, or 0: any number
-template <std::size_t Factors>
-void SynchronousProduct::combine(std::size_t square, std::size_t index_in_run) {
-  const std::size_t factors = Factors > 0 ? Factors : m_factors.size();
-  const std::int32_t level = m_now.places[square].level + 1;
-  const std::int32_t node = m_first_node + static_cast<std::int32_t>(square);
-  ProductNode result;
-  for (unsigned q = 0; q < 4; ++q) {
-    const std::size_t quadrant = 4 * index_in_run + q;
-    const Rest rest = what_is_left<Factors>(quadrant);
-    const std::int32_t slot = 4 * node + static_cast<std::int32_t>(q);
-    if (rest.goes_on && level < m_finest_level) {
-      result.child[q] = add_node(m_now.places[square], q, slot, quadrant);
-      continue;
-    }
-    Float4 others = {1, 1, 1, 0};
-    for (std::size_t f = 0; f < factors; ++f)
-      if (f != rest.factor)
-        others *= m_quadrant_means[f][quadrant];
-    ProductLeaf& leaf = m_product.m_leaves[m_leaf_count];
-    leaf.light = m_quadrant_means[rest.factor][quadrant];
-    leaf.reflectance = others;
-    leaf.node = rest.cut ? no_node : m_quadrant_details[rest.factor][quadrant];
-    leaf.slot = slot;
-    leaf.level = static_cast<std::uint8_t>(level);
-    leaf.rest = static_cast<std::uint8_t>(rest.factor);
-    const Float4 floor = m_product.m_rests[rest.factor].floor;
-    result.weights[q] =
-        std::max(lane_sum(leaf.light * larger(others, floor) * luminance_lanes), 0.0F);
-    result.child[q] = ~static_cast<std::int32_t>(m_leaf_count++);
-  }
-  m_product.m_nodes[static_cast<std::size_t>(node)] = result;
+void SynchronousProduct::finish(std::size_t begin, std::size_t end, std::int32_t level) {
+  detail::SplitSquares squares;
+  squares.factors = m_views;
+  squares.begin = begin;
+  squares.end = end;
+  squares.may_split = level < m_finest_level;
+  squares.node_count = m_node_count;
+  squares.nodes = m_product.m_nodes.data();
+  squares.parent_slots = m_parent_slots.data();
+  detail::finish(squares);
+  m_node_count = squares.node_count;
+  m_integral += squares.leaf_sum * power_of_two(-2 * level);
 }
 
-/// Looks at a quadrant: whether it wants splitting, and if not, which factor may have detail left.
-template <std::size_t Factors>
-SynchronousProduct::Rest SynchronousProduct::what_is_left(std::size_t quadrant) const {
-  const std::size_t factors = Factors > 0 ? Factors : m_factors.size();
-  std::size_t detailed = 0;
-  std::size_t last = 0;
-  bool zero = false;
-  for (std::size_t f = 0; f < factors; ++f) {
-    const bool constant = m_quadrant_details[f][quadrant] == no_node;
-    zero = zero || (constant && vanishes(m_quadrant_means[f][quadrant]));
-    detailed += constant ? 0 : 1;
-    last = constant ? last : f;
+void SynchronousProduct::find_places(std::size_t begin, std::size_t end) {
+  grow(m_places, end);
+  for (std::size_t node = begin; node < end; ++node) {
+    const auto slot = static_cast<std::uint32_t>(m_parent_slots[node]);
+    const SquarePlace& parent = m_places[slot / 4];
+    m_places[node] = {parent.level + 1, 2 * parent.column + (slot & 1U),
+                      2 * parent.row + (slot >> 1U & 1U)};
   }
-  const bool ends = detailed == 0 || (detailed == 1 && m_is_tree[last] != 0);
-  return {last, !ends && !zero, !ends};
-}
-
-/// @return the new node of a square's quadrant
-std::int32_t SynchronousProduct::add_node(const SquarePlace& square, unsigned q, std::int32_t slot,
-                                          std::size_t quadrant) {
-  m_next.places.push_back(
-      {square.level + 1, 2 * square.column + (q & 1U), 2 * square.row + (q >> 1U)});
-  for (std::size_t f = 0; f < m_factors.size(); ++f) {
-    m_next.means[f].push_back(m_quadrant_means[f][quadrant]);
-    m_next.details[f].push_back(m_quadrant_details[f][quadrant]);
-  }
-  m_product.m_nodes.emplace_back();
-  m_parent_slots.push_back(slot);
-  return static_cast<std::int32_t>(m_product.m_nodes.size() - 1);
 }
 
 } // namespace haarlight::wavelet

@@ -226,6 +226,37 @@ TEST_CASE("a rotated reflectance is a factor like any other") {
   CHECK(((found.cast<double>() - expected).abs() / expected).maxCoeff() < 0.01);
 }
 
+TEST_CASE("trees give the averages of their quadrants, however they are turned or stored") {
+  for (const float unit : {1.0F, 1e12F}) // halves of ordinary and of vast scale
+    for (const CoefficientType type : {CoefficientType::Half, CoefficientType::Float}) {
+      Map map = random_map(16, 90);
+      for (float& value : map.rgb)
+        value *= unit;
+      CompressOptions options;
+      options.coefficients = type;
+      CompressReport report;
+      const Tree tree = compress_map(map, options, report);
+      const TreeView view = tree.view();
+      const Float4 mean = to_lanes(view.mean);
+      const std::uint32_t root = view.root();
+      const std::int32_t slot = 0;
+      for (int turns = 0; turns < 4; ++turns)
+        for (const bool mirrored : {false, true}) {
+          const SquareSymmetry symmetry = {turns, mirrored};
+          Float4 means[4];
+          std::uint32_t details[4];
+          TreeFactor(view, symmetry).split({nullptr, &slot, &mean, &root, 1}, {means, details});
+          for (unsigned q = 0; q < 4; ++q) {
+            const unsigned stored = symmetry.to_stored(q);
+            const Rgb expected =
+                view.average(1, static_cast<int>(stored & 1U), static_cast<int>(stored >> 1U));
+            CHECK(((to_rgb(means[q]) - expected) / expected).abs().maxCoeff() < 1e-6F);
+            CHECK(details[q] == view.child(root, stored));
+          }
+        }
+    }
+}
+
 TEST_CASE("descents side by side are those one by one") {
   const std::vector<Tree> trees = random_trees(2, 80);
   const TreeFactor factors[2] = {TreeFactor(trees[0].view()), TreeFactor(trees[1].view())};

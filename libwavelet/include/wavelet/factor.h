@@ -8,6 +8,7 @@
 #include <wavelet/symmetry.h>
 #include <wavelet/tree.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,11 +21,13 @@ struct SquarePlace {
   std::uint32_t row = 0;
 };
 
-/// Many squares as one factor sees them. `detail` is the factor's own handle on what lies below a
-/// square; no_node says that it is constant there.
+/// Many squares as one factor sees them: square i has the average mean[slot[i]], and
+/// detail[slot[i]] is the factor's own handle on what lies below; no_node says that it is constant
+/// there.
 struct FactorSquares {
-  const SquarePlace* place;
-  const Float4* mean; ///< averages, lanes R, G, B, *
+  const SquarePlace* place; ///< by square; nullptr if no factor needs it
+  const std::int32_t* slot;
+  const Float4* mean; ///< lanes R, G, B, *
   const std::uint32_t* detail;
   std::size_t count;
 };
@@ -47,10 +50,27 @@ public:
   /// Averages and handles of the squares' quadrants. Squares that are constant are split like any.
   virtual void split(const FactorSquares& squares, const FactorQuadrants& out) const = 0;
 
+  /// Whether split() looks at places; if no factor's does, nobody keeps track of them.
+  virtual bool needs_places() const { return true; }
+
   /// The tree that this is and that its handles are nodes of, or nullptr: below a square on which
   /// all other factors are constant, a product is then left to it.
   virtual const TreeView* tree() const { return nullptr; }
 };
+
+namespace detail {
+
+/// How a symmetry of the square moves a node's quadrants and differences.
+struct TreeTurn {
+  std::array<unsigned, 4> stored; ///< the stored quadrant that stands for each
+  bool plain;                     ///< which is the quadrant itself
+  bool swaps;                     ///< differences along x are stored along y
+  float sign_x, sign_y;           ///< of the differences along x and y, as they are seen
+
+  explicit TreeTurn(const SquareSymmetry& symmetry);
+};
+
+} // namespace detail
 
 /// A stored tree, seen through the square's symmetry.
 class TreeFactor final : public Factor {
@@ -61,12 +81,12 @@ public:
   Float4 mean() const override { return to_lanes(m_view.mean); }
   std::uint32_t root() const override { return m_view.root(); }
   void split(const FactorSquares& squares, const FactorQuadrants& out) const override;
-  const TreeView* tree() const override { return m_plain ? &m_view : nullptr; }
+  bool needs_places() const override { return false; }
+  const TreeView* tree() const override { return m_turn.plain ? &m_view : nullptr; }
 
 private:
   TreeView m_view;
-  unsigned m_stored[4]; ///< the stored quadrant that stands for each
-  bool m_plain;
+  detail::TreeTurn m_turn;
 };
 
 /// The same everywhere.
@@ -77,6 +97,7 @@ public:
   Float4 mean() const override { return m_value; }
   std::uint32_t root() const override { return no_node; }
   void split(const FactorSquares& squares, const FactorQuadrants& out) const override;
+  bool needs_places() const override { return false; }
 
 private:
   Float4 m_value;

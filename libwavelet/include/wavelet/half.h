@@ -9,15 +9,26 @@
 
 namespace haarlight::wavelet {
 
+/// Four finite halves as floats, but for a factor of half_unit; exact. Lanes beyond what is wanted
+/// may hold anything finite.
+inline Float4 small_floats(const void* four_halves) {
+  using Short8 = std::uint16_t __attribute__((vector_size(16)));
+  using Long2 = std::uint64_t __attribute__((vector_size(16)));
+  std::uint64_t raw = 0;
+  std::memcpy(&raw, four_halves, sizeof raw);
+  const auto halves = std::bit_cast<Short8>(Long2{raw, 0});
+  const auto upper =
+      std::bit_cast<Int4>(__builtin_shufflevector(Short8{}, halves, 0, 8, 1, 9, 2, 10, 3, 11));
+  // The shift leaves three copies of the sign.
+  return std::bit_cast<Float4>((upper >> 3) & static_cast<std::int32_t>(0x8fffffffU));
+}
+
+/// How far the biases of the two formats' exponents lie apart.
+inline constexpr float half_unit = 0x1p112F;
+
 /// Four finite halves as floats, exact; lanes beyond what is wanted may hold anything finite.
 inline Float4 halves_to_floats(const void* four_halves) {
-  using Short4 = std::uint16_t __attribute__((vector_size(8)));
-  using Unsigned4 = std::uint32_t __attribute__((vector_size(16)));
-  Short4 raw;
-  std::memcpy(&raw, four_halves, sizeof raw);
-  const Unsigned4 bits = __builtin_convertvector(raw, Unsigned4);
-  const Float4 magnitude = std::bit_cast<Float4>((bits & 0x7fffU) << 13U) * 0x1p112F;
-  return std::bit_cast<Float4>(std::bit_cast<Unsigned4>(magnitude) | ((bits & 0x8000U) << 16U));
+  return small_floats(four_halves) * half_unit;
 }
 
 inline float half_to_float(std::uint16_t half) {

@@ -10,6 +10,7 @@
 #include <wavelet/tree.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,16 +23,15 @@ struct ProductNode {
   std::int32_t child[4] = {-1, -1, -1, -1};
 };
 
-/// A square on which all factors but one count as constant. Columns and rows count squares of the
-/// leaf's level.
+/// A square on which all factors but one count as constant.
 struct ProductLeaf {
-  Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, 0
+  Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, *
   Float4 reflectance = {};      ///< product of the others' averages, lanes R, G, B
   std::uint32_t node = no_node; ///< in the tree of the factor that is left
   std::int32_t slot = -1;       ///< 4 × its parent's product node + quadrant
-  std::uint16_t x = 0, y = 0;
-  std::uint8_t level = 0;
-  std::uint8_t rest = 0; ///< which factor is left
+  std::uint16_t x = 0, y = 0;   ///< in squares of its level; adaptive products alone know these
+  std::uint8_t level = 0;       ///< likewise
+  std::uint8_t rest = 0;        ///< which factor is left
 };
 static_assert(sizeof(ProductLeaf) == 48);
 
@@ -49,14 +49,18 @@ public:
   /// Nodes, parents before children; the first is the whole square.
   std::span<const ProductNode> nodes() const { return m_nodes; }
 
-  /// Leaves in no particular order; those that no node names are not in use and hold no light.
-  std::span<const ProductLeaf> leaves() const { return m_leaves; }
+  /// The leaf that a node's negative child names.
+  ProductLeaf leaf(std::int32_t child) const {
+    return m_leaves.empty() ? leaf_at_slot(~child) : m_leaves[static_cast<std::size_t>(~child)];
+  }
 
   /// The tree that a leaf's node is of.
   const TreeView& rest(std::uint32_t index) const { return m_rests[index].tree; }
 
   std::size_t bytes() const {
-    return m_nodes.size() * sizeof(ProductNode) + m_leaves.size() * sizeof(ProductLeaf);
+    const std::size_t slots = 4 * m_nodes.size() * m_slots.size();
+    return m_nodes.size() * sizeof(ProductNode) + m_leaves.size() * sizeof(ProductLeaf) +
+           slots * (sizeof(Float4) + sizeof(std::uint32_t));
   }
 
   /// Draws a point of the square; result.pdf is its density per unit square.
@@ -80,6 +84,14 @@ private:
     Float4 floor = {}; ///< of the product of the others, in the density; lanes R, G, B, 0
   };
 
+  /// What a factor holds at the nodes' quadrants.
+  struct Slots {
+    std::vector<Float4> means; ///< lanes R, G, B, *
+    std::vector<std::uint32_t> details;
+  };
+
+  ProductLeaf leaf_at_slot(std::int32_t slot) const;
+
   /// Turns node weights, given at leaves, into averages all the way up.
   void sum_upwards(const std::vector<std::int32_t>& parent_slots);
 
@@ -98,8 +110,12 @@ private:
   /// Average weight over the whole square.
   float mean() const { return 0.25F * lane_sum(m_nodes[0].weights); }
 
-  TreeDensity density(std::int32_t leaf) const {
-    const ProductLeaf& l = m_leaves[static_cast<std::size_t>(leaf)];
+  TreeDensity density(std::int32_t child) const {
+    return m_leaves.empty() ? density(leaf_at_slot(~child))
+                            : density(m_leaves[static_cast<std::size_t>(~child)]);
+  }
+
+  TreeDensity density(const ProductLeaf& l) const {
     const Rest& rest = m_rests[l.rest];
     const Float4 weights = larger(l.reflectance, rest.floor) * luminance_lanes;
     return {&rest.tree, l.node, lane_sum(l.light * weights), weights};
@@ -107,8 +123,10 @@ private:
 
   std::vector<Rest> m_rests;
   std::vector<ProductNode> m_nodes;
-  std::vector<ProductLeaf> m_leaves;
+  std::vector<ProductLeaf> m_leaves; ///< empty if the leaf ~child lies at the slot ~child
+  std::vector<Slots> m_slots;        ///< by factor, then by 4 × node + quadrant
   std::size_t m_leaf_count = 0;
+  std::optional<Rgb> m_integral; ///< if it is known already
 };
 
 } // namespace haarlight::wavelet

@@ -8,6 +8,17 @@
 #include <vector>
 
 namespace haarlight::wavelet {
+namespace detail {
+
+/// One factor of a product. Arrays go by slot: 4 × product node + quadrant.
+struct ProductFactor {
+  Float4* means;          ///< over the quadrants, lanes R, G, B, *
+  std::uint32_t* details; ///< its handles on them
+  Float4 floor;           ///< of the product of the others, in the density
+  std::int32_t is_tree;   ///< 0 or −1: what is left may be left to it
+};
+
+} // namespace detail
 
 /// Visits, level by level, the squares on which at least two factors have detail. Where at most one
 /// is left and that is a tree, the product is a constant times this tree and nothing more needs
@@ -22,45 +33,24 @@ public:
   const ProductTree& build(std::span<const Factor* const> factors, int finest_level = 15);
 
 private:
-  /// Squares of a level that are about to be split, as every factor sees them.
-  struct Frontier {
-    std::vector<SquarePlace> places;
-    std::vector<std::vector<Float4>> means; ///< by factor
-    std::vector<std::vector<std::uint32_t>> details;
-
-    void clear(std::size_t factors);
-  };
-
-  /// What a quadrant holds.
-  struct Rest {
-    std::size_t factor; ///< that may have detail, all others are constant or given up
-    bool goes_on;       ///< more than one has detail, and none vanishes
-    bool cut;           ///< more than one has detail
-  };
-
-  /// A run of squares is split together: small enough that their quadrants stay in the cache.
+  /// Nodes that are split together: few enough that they stay in the cache.
   static constexpr std::size_t run = 32;
 
+  void look_at_factors();
+  void make_room(std::size_t begin, std::size_t end);
   void start();
-  void choose_floors();
-  void split_run(std::size_t begin, std::size_t count);
-  template <std::size_t Factors>
-  void combine(std::size_t square, std::size_t index_in_run);
-  template <std::size_t Factors>
-  Rest what_is_left(std::size_t quadrant) const;
-  std::int32_t add_node(const SquarePlace& square, unsigned q, std::int32_t slot,
-                        std::size_t quadrant);
+  void split(std::size_t begin, std::size_t end, std::int32_t level);
+  void finish(std::size_t begin, std::size_t end, std::int32_t level);
+  void find_places(std::size_t begin, std::size_t end);
 
   std::span<const Factor* const> m_factors;
   int m_finest_level = 0;
-  std::vector<std::uint8_t> m_is_tree; ///< by factor
-  Frontier m_now;
-  Frontier m_next;
-  std::int32_t m_first_node = 0; ///< product node of m_now's first square
-  std::size_t m_leaf_count = 0;
-  std::vector<std::vector<Float4>> m_quadrant_means;
-  std::vector<std::vector<std::uint32_t>> m_quadrant_details;
-  std::vector<std::int32_t> m_parent_slots;
+  bool m_needs_places = false;
+  std::size_t m_node_count = 0;
+  Float4 m_integral = {};
+  std::vector<detail::ProductFactor> m_views;
+  std::vector<std::int32_t> m_parent_slots; ///< by node
+  std::vector<SquarePlace> m_places;        ///< by node, if a factor needs them
   ProductTree m_product;
 };
 
