@@ -1,0 +1,194 @@
+#include <bench/measure.h>
+
+#include <bench/scenes.h>
+#include <bench/session.h>
+
+#include <render/film_output.h>
+
+#include <wavelet/error.h>
+
+#include <map>
+#include <numeric>
+
+namespace haarlight::bench {
+
+using namespace renderer;
+
+namespace {
+
+/// Seeds of the reference lie apart from all others.
+constexpr std::uint32_t reference_seeds = 0x80000000U;
+constexpr int most_spp = 1 << 18;
+
+double inverse(double value) { return value > 0 ? 1 / value : unknown; }
+
+class PairMeasurement {
+public:
+  PairMeasurement(const Plan& plan, const Entry& brdf, const Entry& probe, const std::string& scene,
+                  const WorkDone& done)
+      : m_plan(plan), m_brdf(brdf), m_probe(probe), m_scene(scene_of(scene)), m_done(done) {
+    m_result.brdf = brdf.subject.name;
+    m_result.probe = probe.subject.name;
+    m_result.scene = scene_name(scene);
+    tool::set_film_size(plan.size, m_scene);
+  }
+
+  PairResult run() {
+    measure_reference();
+    for (const SamplerKind kind : m_plan.samplers)
+      measure_sampler(kind);
+    return std::move(m_result);
+  }
+
+private:
+  RenderOptions options_of(SamplerKind kind) const {
+    RenderOptions options = m_plan.render;
+    options.sampler = kind;
+    return options;
+  }
+
+  void measure_reference() {
+    const SamplerKind kind = m_plan.reference_sampler;
+    RenderOptions options = options_of(kind);
+    options.estimator = Estimator::Unbiased;
+    const Session session(pair_scene(m_scene, m_brdf, m_probe, kind).description, options);
+    m_result.light_note = session.scene().light().note();
+    const int spp = m_plan.reference_spp / reference_runs;
+    const auto seed = reference_seeds + static_cast<std::uint32_t>(m_plan.seed);
+    const Runs runs = session.run(Points::Sobol, spp, seed, reference_runs);
+    m_done(m_plan.reference_spp);
+    if (runs.luminances.front().empty())
+      throw_input_error(m_scene.path, "no pixel of the film hits an object");
+    m_reference = reference_of(runs.luminances);
+    m_result.reference = runs.mean;
+    m_result.hit.assign(runs.mean.rgb.size() / 3, false);
+    for (const std::size_t pixel : runs.pixels)
+      m_result.hit[pixel] = true;
+  }
+
+  void measure_sampler(SamplerKind kind) {
+    const PairScene scene = pair_scene(m_scene, m_brdf, m_probe, kind);
+    const Session session(scene.description, options_of(kind));
+    m_sampler = {};
+    m_sampler.brdf = m_result.brdf;
+    m_sampler.probe = m_result.probe;
+    m_sampler.scene = m_result.scene;
+    m_sampler.sampler = sampler_name(kind);
+    m_sampler.claim = traits(kind).claim == SamplerClaim::Biased ? "biased" : "unbiased";
+    m_sampler.setup_seconds = session.setup_seconds();
+    m_sampler.precompute_seconds = scene.precompute_seconds;
+    for (const Points points : m_plan.points)
+      measure_points(kind, session, points);
+  }
+
+  void measure_points(SamplerKind kind, const Session& session, Points points) {
+    m_sampler.points = points == Points::Sobol ? "sobol" : "random";
+    const auto seed = static_cast<std::uint32_t>(m_plan.seed);
+    CostModel cost;
+    std::vector<Runs> all;
+    for (const int spp : m_plan.spps) {
+      all.push_back(session.run(points, spp, seed, m_plan.seeds));
+      cost.add(spp, all.back().seconds);
+      m_done(spp * m_plan.seeds);
+    }
+    if (all.size() == 1) {
+      const int pilot = all.front().spp > 1 ? std::max(1, all.front().spp / 8) : 8;
+      cost.add(pilot, session.run(points, pilot, seed, 1).seconds);
+    }
+    m_sampler.seconds_per_sample =
+        cost.seconds_per_spp() / static_cast<double>(m_reference.mean.size());
+    const std::vector<Row> rows = equal_samples(all);
+    std::vector<double>& budgets = m_budgets[points];
+    const bool base = budgets.empty();
+    if (base)
+      budgets = m_plan.seconds;
+    if (budgets.empty())
+      for (const Row& row : rows)
+        budgets.push_back(row.seconds);
+    for (std::size_t i = 0; i < budgets.size(); ++i) {
+      const bool own = base && m_plan.seconds.empty();
+      const Runs runs =
+          own ? std::move(all[i])
+              : session.run(points, cost.affordable(budgets[i], most_spp), seed, m_plan.seeds);
+      add_equal_time(kind, runs, budgets[i]);
+      m_done(own ? 0 : m_plan.spps[std::min(i, m_plan.spps.size() - 1)] * m_plan.seeds);
+    }
+  }
+
+  std::vector<Row> equal_samples(const std::vector<Runs>& all) {
+    std::vector<Row> rows;
+    std::vector<double> spps;
+    std::vector<double> errors;
+    for (const Runs& runs : all) {
+      rows.push_back(row_of(runs, "equal-samples"));
+      spps.push_back(runs.spp);
+      errors.push_back(rows.back().relmse);
+    }
+    for (Row& row : rows)
+      row.slope = log_slope(spps, errors);
+    m_result.rows.insert(m_result.rows.end(), rows.begin(), rows.end());
+    return rows;
+  }
+
+  void add_equal_time(SamplerKind kind, const Runs& runs, double budget) {
+    const bool first = budget == m_budgets.begin()->second.front() && //
+                       m_sampler.points == first_points();
+    Row row = row_of(runs, "equal-time");
+    row.budget_seconds = budget;
+    if (first)
+      m_result.exhibits.push_back({kind, runs.spp, row.relmse, runs.first});
+    m_result.rows.push_back(std::move(row));
+  }
+
+  const char* first_points() const {
+    return m_plan.points.front() == Points::Sobol ? "sobol" : "random";
+  }
+
+  Row row_of(const Runs& runs, const char* mode) const {
+    const Quality quality = quality_of(m_reference, runs.luminances);
+    Row row = m_sampler;
+    row.mode = mode;
+    row.spp = runs.spp;
+    row.seconds = runs.seconds;
+    row.seed_count = m_plan.seeds;
+    row.relmse = quality.relmse;
+    row.relmse_stderr = quality.relmse_stderr;
+    row.reference_relmse = quality.reference_relmse;
+    row.mean_ratio = quality.mean_ratio;
+    row.mean_ratio_stderr = quality.mean_ratio_stderr;
+    if (runs.spp > 1)
+      row.relvar_per_sample = runs.spp * relative_mean(m_reference, runs.variances);
+    row.seconds_per_point = runs.seconds_per_point;
+    row.efficiency = inverse(row.relmse * row.seconds);
+    return row;
+  }
+
+  const Plan& m_plan;
+  const Entry& m_brdf;
+  const Entry& m_probe;
+  SceneDescription m_scene;
+  const WorkDone& m_done;
+  Reference m_reference;
+  Row m_sampler; ///< what all rows of the sampler at hand have in common
+  std::map<Points, std::vector<double>> m_budgets; ///< by the base sampler
+  PairResult m_result;
+};
+
+} // namespace
+
+double work_units(const Plan& plan) {
+  const int samples = std::accumulate(plan.spps.begin(), plan.spps.end(), 0);
+  const auto budgets = plan.seconds.empty() ? 1.0
+                                            : static_cast<double>(plan.seconds.size()) /
+                                                  static_cast<double>(plan.spps.size());
+  return plan.reference_spp + (1 + budgets) * samples * plan.seeds *
+                                  static_cast<double>(plan.samplers.size()) *
+                                  static_cast<double>(plan.points.size());
+}
+
+PairResult measure_pair(const Plan& plan, const Entry& brdf, const Entry& probe,
+                        const std::string& scene, const WorkDone& done) {
+  return PairMeasurement(plan, brdf, probe, scene, done).run();
+}
+
+} // namespace haarlight::bench

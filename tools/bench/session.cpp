@@ -1,0 +1,100 @@
+#include <bench/session.h>
+
+#include <algorithm>
+#include <ctime>
+#include <limits>
+
+namespace haarlight::bench {
+
+using namespace renderer;
+
+namespace {
+
+template <class Work>
+double process_seconds_of(Work work) {
+  const std::clock_t start = std::clock();
+  work();
+  return static_cast<double>(std::clock() - start) / static_cast<double>(CLOCKS_PER_SEC);
+}
+
+/// What reading a scene's files takes, whatever the sampler.
+double reading_seconds(const SceneDescription& description) {
+  return process_seconds_of([&] {
+    const Light light(description.light, SourceLookups{}.probe);
+    for (const MaterialDescription& material : description.materials)
+      const Material trial(material, SourceLookups{}.brdf);
+  });
+}
+
+std::vector<std::size_t> hit_pixels(const Film& film) {
+  std::vector<std::size_t> pixels;
+  for (std::size_t i = 0; i < film.count(); ++i)
+    if (film.samples[i] > 0)
+      pixels.push_back(i);
+  return pixels;
+}
+
+Pixels luminances_of(const Film& film, const std::vector<std::size_t>& pixels) {
+  Pixels result;
+  result.reserve(pixels.size());
+  for (const std::size_t i : pixels)
+    result.push_back(static_cast<double>(luminance(film.color(i))));
+  return result;
+}
+
+void add(const std::vector<float>& rgb, float share, image::Picture& mean) {
+  for (std::size_t i = 0; i < rgb.size(); ++i)
+    mean.rgb[i] += share * rgb[i];
+}
+
+void add_variances(const Film& film, const std::vector<std::size_t>& pixels, double share,
+                   Pixels& variances) {
+  variances.resize(pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    variances[i] += share * static_cast<double>(film.variance[pixels[i]]);
+}
+
+} // namespace
+
+Session::Session(const SceneDescription& description, const RenderOptions& options)
+    : m_options(options) {
+  const double reading = reading_seconds(description);
+  const double all = process_seconds_of([&] {
+    m_scene = std::make_unique<LoadedScene>(description, SourceLookups{}, options.sampler,
+                                            needs_unshadowed(options.estimator));
+    m_factories = std::make_unique<RenderFactories>(*m_scene, m_options);
+  });
+  m_setup_seconds = std::max(0.0, all - reading);
+}
+
+Runs Session::run(Points points, int spp, std::uint32_t seed, int count) const {
+  Runs result;
+  result.spp = spp;
+  result.seconds = std::numeric_limits<double>::infinity();
+  result.seconds_per_point = result.seconds;
+  RenderOptions options = m_options;
+  options.points = points;
+  options.spp = spp;
+  const SceneDescription& scene = m_scene->description();
+  result.first = image::Picture(scene.width, scene.height);
+  result.mean = result.first;
+  for (int k = 0; k < count; ++k) {
+    options.seed = seed + static_cast<std::uint32_t>(k);
+    const RenderResult rendered =
+        render(*m_scene, *m_factories, options, scene.width, scene.height);
+    const RenderStatistics& s = rendered.statistics;
+    if (k == 0) {
+      result.pixels = hit_pixels(rendered.film);
+      result.first.rgb = rendered.film.rgb;
+    }
+    add(rendered.film.rgb, 1.0F / static_cast<float>(count), result.mean);
+    result.luminances.push_back(luminances_of(rendered.film, result.pixels));
+    add_variances(rendered.film, result.pixels, 1.0 / count, result.variances);
+    result.seconds = std::min(result.seconds, s.thread_seconds);
+    result.seconds_per_point = std::min(
+        result.seconds_per_point, s.prepare_seconds / std::max(1.0, static_cast<double>(s.points)));
+  }
+  return result;
+}
+
+} // namespace haarlight::bench
