@@ -2,6 +2,8 @@
 
 #include <wavelet/error.h>
 
+#include <ctime>
+
 namespace haarlight::renderer {
 
 LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookups& lookups,
@@ -12,6 +14,7 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
   m_materials.reserve(description.materials.size());
   for (const MaterialDescription& material : description.materials)
     m_materials.emplace_back(material, lookups.brdf);
+  const std::clock_t start = std::clock();
   if (needs(sampler, NeedsLightDistribution))
     m_light.need_distribution();
   if (needs(sampler, NeedsLightTree) || unshadowed_product)
@@ -24,6 +27,8 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
       material.need_roll_table();
     check_tables(traits(sampler).name);
   }
+  m_preparation_seconds =
+      static_cast<double>(std::clock() - start) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
 void LoadedScene::check_tables(const std::string& sampler) const {

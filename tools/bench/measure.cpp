@@ -1,5 +1,6 @@
 #include <bench/measure.h>
 
+#include <bench/figures.h>
 #include <bench/scenes.h>
 #include <bench/session.h>
 
@@ -8,7 +9,6 @@
 #include <wavelet/error.h>
 
 #include <map>
-#include <numeric>
 
 namespace haarlight::bench {
 
@@ -19,8 +19,6 @@ namespace {
 /// Seeds of the reference lie apart from all others.
 constexpr std::uint32_t reference_seeds = 0x80000000U;
 constexpr int most_spp = 1 << 18;
-
-double inverse(double value) { return value > 0 ? 1 / value : unknown; }
 
 class PairMeasurement {
 public:
@@ -117,15 +115,9 @@ private:
 
   std::vector<Row> equal_samples(const std::vector<Runs>& all) {
     std::vector<Row> rows;
-    std::vector<double> spps;
-    std::vector<double> errors;
-    for (const Runs& runs : all) {
-      rows.push_back(row_of(runs, "equal-samples"));
-      spps.push_back(runs.spp);
-      errors.push_back(rows.back().relmse);
-    }
-    for (Row& row : rows)
-      row.slope = log_slope(spps, errors);
+    for (const Runs& runs : all)
+      rows.push_back(row_of(m_sampler, "equal-samples", runs, m_reference));
+    set_slopes(rows);
     m_result.rows.insert(m_result.rows.end(), rows.begin(), rows.end());
     return rows;
   }
@@ -133,7 +125,7 @@ private:
   void add_equal_time(SamplerKind kind, const Runs& runs, double budget) {
     const bool first = budget == m_budgets.begin()->second.front() && //
                        m_sampler.points == first_points();
-    Row row = row_of(runs, "equal-time");
+    Row row = row_of(m_sampler, "equal-time", runs, m_reference);
     row.budget_seconds = budget;
     if (first)
       m_result.exhibits.push_back({kind, runs.spp, row.relmse, runs.first});
@@ -142,25 +134,6 @@ private:
 
   const char* first_points() const {
     return m_plan.points.front() == Points::Sobol ? "sobol" : "random";
-  }
-
-  Row row_of(const Runs& runs, const char* mode) const {
-    const Quality quality = quality_of(m_reference, runs.luminances);
-    Row row = m_sampler;
-    row.mode = mode;
-    row.spp = runs.spp;
-    row.seconds = runs.seconds;
-    row.seed_count = m_plan.seeds;
-    row.relmse = quality.relmse;
-    row.relmse_stderr = quality.relmse_stderr;
-    row.reference_relmse = quality.reference_relmse;
-    row.mean_ratio = quality.mean_ratio;
-    row.mean_ratio_stderr = quality.mean_ratio_stderr;
-    if (runs.spp > 1)
-      row.relvar_per_sample = runs.spp * relative_mean(m_reference, runs.variances);
-    row.seconds_per_point = runs.seconds_per_point;
-    row.efficiency = inverse(row.relmse * row.seconds);
-    return row;
   }
 
   const Plan& m_plan;
@@ -175,16 +148,6 @@ private:
 };
 
 } // namespace
-
-double work_units(const Plan& plan) {
-  const int samples = std::accumulate(plan.spps.begin(), plan.spps.end(), 0);
-  const auto budgets = plan.seconds.empty() ? 1.0
-                                            : static_cast<double>(plan.seconds.size()) /
-                                                  static_cast<double>(plan.spps.size());
-  return plan.reference_spp + (1 + budgets) * samples * plan.seeds *
-                                  static_cast<double>(plan.samplers.size()) *
-                                  static_cast<double>(plan.points.size());
-}
 
 PairResult measure_pair(const Plan& plan, const Entry& brdf, const Entry& probe,
                         const std::string& scene, const WorkDone& done) {

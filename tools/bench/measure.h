@@ -35,9 +35,6 @@ struct PairResult {
 /// Called with units of work done, of those that work_units() tells.
 using WorkDone = std::function<void(double units)>;
 
-/// Units that one pair takes: samples per pixel.
-double work_units(const Plan& plan);
-
 /// Renders the reference, then every sampler at equal samples and at equal time.
 /// @param scene a word as scene_of() takes
 /// @throws Error(Input) if a scene lacks what a sampler needs, or no pixel hits an object

@@ -1,5 +1,6 @@
 #include <bench/overview.h>
 
+#include <bench/cells.h>
 #include <bench/look.h>
 
 #include <cmath>
@@ -123,24 +124,6 @@ std::string standings_table(const Plan& plan, const Pairs& time, const Pairs& sa
 }
 
 } // namespace
-
-std::string figure_cell(const std::string& html) { return "<td class=\"n\">" + html + "</td>"; }
-std::string text_cell(const std::string& html) { return "<td>" + html + "</td>"; }
-
-std::string head_cell(const std::string& html, int columns) {
-  return (columns > 1 ? "<th colspan=\"" + std::to_string(columns) + "\" class=\"group\">"
-                      : std::string("<th>")) +
-         html + "</th>";
-}
-
-std::string sampler_html(const std::string& name) {
-  const auto kind = renderer::sampler_from_name(name);
-  if (!kind)
-    return escaped(name);
-  const bool biased = renderer::traits(*kind).claim == renderer::SamplerClaim::Biased;
-  return swatch_svg(look_of(*kind)) + escaped(name) +
-         (biased ? " <span class=\"tag\">biased</span>" : "");
-}
 
 std::string overview_html(const Plan& plan, const std::vector<Verdict>& verdicts) {
   const Pairs time = pairs_of(verdicts, "equal-time");

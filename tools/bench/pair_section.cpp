@@ -1,10 +1,11 @@
 #include <bench/pair_section.h>
 
+#include <bench/cells.h>
 #include <bench/look.h>
-#include <bench/overview.h>
 #include <bench/pictures.h>
 #include <bench/plot.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace haarlight::bench {
@@ -29,7 +30,10 @@ std::string plots(const Plan& plan, const PairResult& pair, const std::string& p
     Series time = spp;
     for (const Row* row : rows_of(pair, name, points, "equal-samples"))
       spp.points.emplace_back(row->spp, row->relmse);
-    for (const Row* row : rows_of(pair, name, points, ""))
+    std::vector<const Row*> both = rows_of(pair, name, points, "");
+    std::stable_sort(both.begin(), both.end(),
+                     [](const Row* a, const Row* b) { return a->spp < b->spp; });
+    for (const Row* row : both)
       time.points.emplace_back(row->seconds, row->relmse);
     by_spp.push_back(std::move(spp));
     by_time.push_back(std::move(time));

@@ -47,6 +47,9 @@ void declare(tool::Tool& app, Plan& plan);
 /// Completes the plan. @throws UsageError for what cannot be
 void check(Plan& plan);
 
+/// Units of work that one pair takes: samples per pixel of all runs, roughly.
+double work_units(const Plan& plan);
+
 /// A path's name without directories and without what follows its last dot.
 std::string stem_of(const std::string& path);
 

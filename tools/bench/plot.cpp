@@ -1,5 +1,7 @@
 #include <bench/plot.h>
 
+#include <bench/axis.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,56 +15,6 @@ constexpr double right = 448; ///< beyond lie the labels
 constexpr double top = 34;
 constexpr double bottom = 330;
 constexpr double label_height = 13;
-
-/// A logarithmic axis from pixel to pixel.
-struct Axis {
-  double low = 1e300;
-  double high = 0;
-  double from = 0;
-  double to = 1;
-
-  void take(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  /// Leaves some room on both sides.
-  void finish() {
-    if (high <= 0)
-      low = high = 1;
-    const double room = std::max(1.12, std::pow(high / low, 0.04));
-    low /= room;
-    high *= room;
-  }
-  double place(double value) const {
-    return from + (to - from) * std::log(value / low) / std::log(high / low);
-  }
-  bool holds(double value) const { return value >= low && value <= high; }
-
-  /// Powers of ten; 2 and 5 times these as well where they would be few.
-  std::vector<double> ticks() const {
-    std::vector<double> result;
-    const bool dense = high / low < 100;
-    for (double power = std::floor(std::log10(low)); power <= std::log10(high); ++power)
-      for (const double factor : {1.0, 2.0, 5.0})
-        if ((dense || factor == 1) && holds(factor * std::pow(10, power)))
-          result.push_back(factor * std::pow(10, power));
-    return result;
-  }
-};
-
-/// Of 1, 2 or 5 times a power of ten, or of a number of samples.
-std::string tick_text(double value) {
-  if (value >= 1 && value < 1e6)
-    return std::to_string(std::lround(value));
-  if (value >= 0.0099 && value < 1)
-    return number_html(value);
-  const double power = std::floor(std::log10(value) + 1e-9);
-  const long factor = std::lround(value / std::pow(10, power));
-  std::string text = factor == 1 ? std::string() : std::to_string(factor).append("·");
-  return text.append("10<tspan dy=\"-5\" font-size=\"8\">")
-      .append(std::to_string(std::lround(power)))
-      .append("</tspan>");
-}
 
 std::string text_at(double x, double y, const std::string& attributes, const std::string& text) {
   return "<text x=\"" + fixed(x) + "\" y=\"" + fixed(y) + "\" " + attributes + ">" + text +
@@ -141,7 +93,6 @@ std::string log_plot(const std::vector<Series>& series, const PlotText& text,
   Axis y{.from = bottom, .to = top};
   for (Series one : series) {
     std::erase_if(one.points, [](const auto& p) { return !(p.first > 0) || !(p.second > 0); });
-    std::sort(one.points.begin(), one.points.end());
     for (const auto& [a, b] : one.points) {
       x.take(a);
       y.take(b);

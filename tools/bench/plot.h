@@ -12,7 +12,8 @@ namespace haarlight::bench {
 struct Series {
   std::string label; ///< written at the curve's end
   Look look;
-  std::vector<std::pair<double, double>> points; ///< those that are not positive are left out
+  std::vector<std::pair<double, double>>
+      points; ///< joined in this order; what is not positive is left out
 };
 
 struct PlotText {

@@ -10,22 +10,6 @@ using namespace renderer;
 
 namespace {
 
-template <class Work>
-double process_seconds_of(Work work) {
-  const std::clock_t start = std::clock();
-  work();
-  return static_cast<double>(std::clock() - start) / static_cast<double>(CLOCKS_PER_SEC);
-}
-
-/// What reading a scene's files takes, whatever the sampler.
-double reading_seconds(const SceneDescription& description) {
-  return process_seconds_of([&] {
-    const Light light(description.light, SourceLookups{}.probe);
-    for (const MaterialDescription& material : description.materials)
-      const Material trial(material, SourceLookups{}.brdf);
-  });
-}
-
 std::vector<std::size_t> hit_pixels(const Film& film) {
   std::vector<std::size_t> pixels;
   for (std::size_t i = 0; i < film.count(); ++i)
@@ -57,14 +41,13 @@ void add_variances(const Film& film, const std::vector<std::size_t>& pixels, dou
 } // namespace
 
 Session::Session(const SceneDescription& description, const RenderOptions& options)
-    : m_options(options) {
-  const double reading = reading_seconds(description);
-  const double all = process_seconds_of([&] {
-    m_scene = std::make_unique<LoadedScene>(description, SourceLookups{}, options.sampler,
-                                            needs_unshadowed(options.estimator));
-    m_factories = std::make_unique<RenderFactories>(*m_scene, m_options);
-  });
-  m_setup_seconds = std::max(0.0, all - reading);
+    : m_options(options),
+      m_scene(std::make_unique<LoadedScene>(description, SourceLookups{}, options.sampler,
+                                            needs_unshadowed(options.estimator))) {
+  const std::clock_t start = std::clock();
+  m_factories = std::make_unique<RenderFactories>(*m_scene, m_options);
+  m_setup_seconds = m_scene->preparation_seconds() +
+                    static_cast<double>(std::clock() - start) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
 Runs Session::run(Points points, int spp, std::uint32_t seed, int count) const {
