@@ -54,6 +54,8 @@ std::vector<PairResult> measure_all(const tool::Tool& app, const Plan& plan,
       for (const std::string& scene : plan.scenes) {
         pairs.push_back(measure_pair(plan, brdf, probe, scene, work));
         const PairResult& pair = pairs.back();
+        if (!pair.light_note.empty())
+          app.detail(probe.subject.path + ": " + pair.light_note);
         app.detail(pair.brdf + ", " + pair.probe + ", " + pair.scene + ": done");
       }
   return pairs;

@@ -24,7 +24,8 @@ class PairMeasurement {
 public:
   PairMeasurement(const Plan& plan, const Entry& brdf, const Entry& probe, const std::string& scene,
                   const WorkDone& done)
-      : m_plan(plan), m_brdf(brdf), m_probe(probe), m_scene(scene_of(scene)), m_done(done) {
+      : m_plan(plan), m_brdf(brdf), m_probe(probe), m_scene(scene_of(scene)), m_done(done),
+        m_seed(static_cast<std::uint32_t>(plan.seed)) {
     m_result.brdf = brdf.subject.name;
     m_result.probe = probe.subject.name;
     m_result.scene = scene_name(scene);
@@ -52,8 +53,7 @@ private:
     const Session session(pair_scene(m_scene, m_brdf, m_probe, kind).description, options);
     m_result.light_note = session.scene().light().note();
     const int spp = m_plan.reference_spp / reference_runs;
-    const auto seed = reference_seeds + static_cast<std::uint32_t>(m_plan.seed);
-    const Runs runs = session.run(Points::Sobol, spp, seed, reference_runs);
+    const Runs runs = session.run(Points::Sobol, spp, reference_seeds + m_seed, reference_runs);
     m_done(m_plan.reference_spp);
     if (runs.luminances.front().empty())
       throw_input_error(m_scene.path, "no pixel of the film hits an object");
@@ -81,59 +81,41 @@ private:
 
   void measure_points(SamplerKind kind, const Session& session, Points points) {
     m_sampler.points = points == Points::Sobol ? "sobol" : "random";
-    const auto seed = static_cast<std::uint32_t>(m_plan.seed);
-    CostModel cost;
     std::vector<Runs> all;
     for (const int spp : m_plan.spps) {
-      all.push_back(session.run(points, spp, seed, m_plan.seeds));
-      cost.add(spp, all.back().seconds);
+      all.push_back(session.run(points, spp, m_seed, m_plan.seeds));
       m_done(spp * m_plan.seeds);
     }
-    if (all.size() == 1) {
-      const int pilot = all.front().spp > 1 ? std::max(1, all.front().spp / 8) : 8;
-      cost.add(pilot, session.run(points, pilot, seed, 1).seconds);
-    }
+    const CostModel cost = session.cost(points, m_seed, m_plan.seeds, all);
     m_sampler.seconds_per_sample =
         cost.seconds_per_spp() / static_cast<double>(m_reference.mean.size());
-    const std::vector<Row> rows = equal_samples(all);
+    add_equal_samples(all);
     std::vector<double>& budgets = m_budgets[points];
-    const bool base = budgets.empty();
-    if (base)
-      budgets = m_plan.seconds;
+    const bool own = budgets.empty() && m_plan.seconds.empty();
     if (budgets.empty())
-      for (const Row& row : rows)
-        budgets.push_back(row.seconds);
+      budgets = own ? seconds_of(all) : m_plan.seconds;
     for (std::size_t i = 0; i < budgets.size(); ++i) {
-      const bool own = base && m_plan.seconds.empty();
-      const Runs runs =
-          own ? std::move(all[i])
-              : session.run(points, cost.affordable(budgets[i], most_spp), seed, m_plan.seeds);
-      add_equal_time(kind, runs, budgets[i]);
-      m_done(own ? 0 : m_plan.spps[std::min(i, m_plan.spps.size() - 1)] * m_plan.seeds);
+      const int spp = own ? all[i].spp : cost.affordable(budgets[i], most_spp);
+      const Runs runs = own ? std::move(all[i]) : session.run(points, spp, m_seed, m_plan.seeds);
+      const Row& row = add_equal_time(runs, budgets[i]);
+      if (i == 0 && points == m_plan.points.front())
+        m_result.exhibits.push_back({kind, spp, row.relmse, runs.first});
+      m_done(m_plan.spps[std::min(i, m_plan.spps.size() - 1)] * m_plan.seeds);
     }
   }
 
-  std::vector<Row> equal_samples(const std::vector<Runs>& all) {
+  void add_equal_samples(const std::vector<Runs>& all) {
     std::vector<Row> rows;
     for (const Runs& runs : all)
       rows.push_back(row_of(m_sampler, "equal-samples", runs, m_reference));
     set_slopes(rows);
     m_result.rows.insert(m_result.rows.end(), rows.begin(), rows.end());
-    return rows;
   }
 
-  void add_equal_time(SamplerKind kind, const Runs& runs, double budget) {
-    const bool first = budget == m_budgets.begin()->second.front() && //
-                       m_sampler.points == first_points();
-    Row row = row_of(m_sampler, "equal-time", runs, m_reference);
-    row.budget_seconds = budget;
-    if (first)
-      m_result.exhibits.push_back({kind, runs.spp, row.relmse, runs.first});
-    m_result.rows.push_back(std::move(row));
-  }
-
-  const char* first_points() const {
-    return m_plan.points.front() == Points::Sobol ? "sobol" : "random";
+  const Row& add_equal_time(const Runs& runs, double budget) {
+    m_result.rows.push_back(row_of(m_sampler, "equal-time", runs, m_reference));
+    m_result.rows.back().budget_seconds = budget;
+    return m_result.rows.back();
   }
 
   const Plan& m_plan;
@@ -141,6 +123,7 @@ private:
   const Entry& m_probe;
   SceneDescription m_scene;
   const WorkDone& m_done;
+  std::uint32_t m_seed;
   Reference m_reference;
   Row m_sampler; ///< what all rows of the sampler at hand have in common
   std::map<Points, std::vector<double>> m_budgets; ///< by the base sampler

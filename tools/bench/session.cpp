@@ -40,6 +40,13 @@ void add_variances(const Film& film, const std::vector<std::size_t>& pixels, dou
 
 } // namespace
 
+std::vector<double> seconds_of(const std::vector<Runs>& all) {
+  std::vector<double> seconds;
+  for (const Runs& runs : all)
+    seconds.push_back(runs.seconds);
+  return seconds;
+}
+
 Session::Session(const SceneDescription& description, const RenderOptions& options)
     : m_options(options),
       m_scene(std::make_unique<LoadedScene>(description, SourceLookups{}, options.sampler,
@@ -78,6 +85,18 @@ Runs Session::run(Points points, int spp, std::uint32_t seed, int count) const {
         result.seconds_per_point, s.prepare_seconds / std::max(1.0, static_cast<double>(s.points)));
   }
   return result;
+}
+
+CostModel Session::cost(Points points, std::uint32_t seed, int count,
+                        const std::vector<Runs>& all) const {
+  CostModel cost;
+  for (const Runs& runs : all)
+    cost.add(runs.spp, runs.seconds);
+  if (all.size() == 1) {
+    const int pilot = all.front().spp > 1 ? std::max(1, all.front().spp / 8) : 8;
+    cost.add(pilot, run(points, pilot, seed, count).seconds);
+  }
+  return cost;
 }
 
 } // namespace haarlight::bench

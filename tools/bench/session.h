@@ -25,6 +25,8 @@ struct Runs {
   std::vector<std::size_t> pixels; ///< indices in the film of those that hit an object
 };
 
+std::vector<double> seconds_of(const std::vector<Runs>& all);
+
 class Session {
 public:
   /// @param options with sampler and estimator
@@ -32,6 +34,11 @@ public:
 
   /// @param seed,count seeds seed, seed + 1, …
   Runs run(renderer::Points points, int spp, std::uint32_t seed, int count) const;
+
+  /// What a film costs, by the runs there are at rising spp; if they are of one spp only, others
+  /// are rendered.
+  CostModel cost(renderer::Points points, std::uint32_t seed, int count,
+                 const std::vector<Runs>& all) const;
 
   /// Once for a scene: what comes after its files are read.
   double setup_seconds() const { return m_setup_seconds; }
