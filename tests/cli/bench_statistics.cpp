@@ -50,11 +50,11 @@ TEST_CASE("relmse of pure noise is its relative variance", "[bench]") {
 
 TEST_CASE("the reference's own noise is taken off", "[bench]") {
   Noise noise;
-  const Reference reference = reference_of(noisy_runs(8, 0.08, noise));
-  const Quality quality = quality_of(reference, noisy_runs(8, 0.01, noise));
-  CHECK(quality.reference_relmse == Approx(0.01).epsilon(0.05));
-  CHECK(quality.relmse == Approx(0.01).epsilon(0.1));
-  CHECK(quality_of(reference, noisy_runs(2, 0, noise)).relmse < 0.001);
+  const Reference reference = reference_of(noisy_runs(8, 0.008, noise));
+  const Quality quality = quality_of(reference, noisy_runs(8, 0.001, noise));
+  CHECK(quality.reference_relmse == Approx(0.001).epsilon(0.05));
+  CHECK(quality.relmse == Approx(0.001).epsilon(0.1));
+  CHECK(quality_of(reference, noisy_runs(2, 0, noise)).relmse < 0.0001);
 }
 
 TEST_CASE("bias shows in the mean ratio and in the error", "[bench]") {

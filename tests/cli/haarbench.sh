@@ -13,8 +13,8 @@ cat >scene.json <<'END'
               {"type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], "material": "floor"}] }
 END
 inputs=(a.binary p.hdr scene.json)
-small=(--size 8x8 --seeds 2 --reference-spp 64 --brdf-size 32 --theta 4 --probe-size 32)
-tables=(--table-size 16 --roll 8 --orientations 4)
+small=(--size 8x8 --seeds 2 --reference-spp 64 --brdf-size 32 --probe-size 32)
+tables=(--theta 4 --table-size 16 --roll 8 --orientations 4)
 run=(--brdf a.binary --probe p.hdr "${small[@]}" "${tables[@]}")
 
 # column NAME FILE.csv: a column of the rows, without its name.
@@ -53,10 +53,10 @@ grep -q "made in" "$log/err" && fail "trees were made twice"
 for file in kept/*; do
   [ "$file" -ot "out/cache/${file#kept/}" ] && fail "${file#kept/} was made twice"
 done
-expect 0 haarbench "${run[@]}" --theta 5 --samplers product,mis --spp 4 -o out -v
+expect 0 haarbench "${run[@]/#4/5}" --samplers product,mis --spp 4 -o out -v
 says "brdf-a.haar: made in"
 printf x >>out/cache/brdf-a.haar
-expect 0 haarbench "${run[@]}" --theta 5 --samplers product,mis --spp 4 -o out -v
+expect 0 haarbench "${run[@]/#4/5}" --samplers product,mis --spp 4 -o out -v
 says "brdf-a.haar: made in"
 rm -r kept out2 first second
 
