@@ -39,10 +39,13 @@ void LoadedScene::check_tables(const std::string& sampler) const {
                           " needs: a .haar made by probe2maps --orientations M");
   for (std::size_t i = 0; i < m_materials.size(); ++i) {
     const TreeTable* rolls = m_materials[i].roll_table();
-    const std::string where = "materials." + m_materials[i].name();
     if (rolls == nullptr)
-      throw_input_error(m_description.path, where + ": names no \"table\", which " + sampler +
-                                                " needs: a .haar made by brdf2maps --roll N");
+      throw_input_error(m_description.path,
+                        std::string("materials.")
+                            .append(m_materials[i].name())
+                            .append(": names no \"table\", which ")
+                            .append(sampler)
+                            .append(" needs: a .haar made by brdf2maps --roll N"));
   }
 }
 

@@ -7,10 +7,11 @@ namespace haarlight::bench {
 std::string figure_cell(const std::string& html) { return "<td class=\"n\">" + html + "</td>"; }
 std::string text_cell(const std::string& html) { return "<td>" + html + "</td>"; }
 
-std::string head_cell(const std::string& html, int columns) {
-  return (columns > 1 ? "<th colspan=\"" + std::to_string(columns) + "\" class=\"group\">"
-                      : std::string("<th>")) +
-         html + "</th>";
+std::string figure_head(const std::string& html) { return "<th class=\"n\">" + html + "</th>"; }
+std::string text_head(const std::string& html) { return "<th>" + html + "</th>"; }
+
+std::string group_head(const std::string& html, int columns) {
+  return "<th class=\"group\" colspan=\"" + std::to_string(columns) + "\">" + html + "</th>";
 }
 
 std::string sampler_html(const std::string& name) {

@@ -1,5 +1,7 @@
 #include <bench/figures.h>
 
+#include <algorithm>
+
 namespace haarlight::bench {
 
 Row row_of(const Row& common, const std::string& mode, const Runs& runs,
@@ -17,7 +19,9 @@ Row row_of(const Row& common, const std::string& mode, const Runs& runs,
   row.mean_ratio_stderr = quality.mean_ratio_stderr;
   if (runs.spp > 1)
     row.relvar_per_sample = runs.spp * relative_mean(reference, runs.variances);
-  row.seconds_per_point = runs.seconds_per_point;
+  const auto points = static_cast<double>(runs.pixels.size());
+  row.seconds_per_point =
+      std::max(0.0, row.seconds / points - runs.spp * common.seconds_per_sample);
   if (row.relmse * row.seconds > 0)
     row.efficiency = 1 / (row.relmse * row.seconds);
   return row;

@@ -42,15 +42,15 @@ std::vector<std::string> level_names(const Plan& plan, const std::string& mode) 
 }
 
 std::string winners_table(const Plan& plan, const Pairs& pairs, const std::string& mode) {
-  std::string html = "<table><thead><tr>" + head_cell("", 4);
+  std::string html = "<table><thead><tr><th colspan=\"4\"></th>";
   const std::vector<std::string> levels = level_names(plan, mode);
   for (const std::string& level : levels)
-    html += head_cell(level, 3);
+    html += group_head(level, 3);
   html += "</tr><tr>";
   for (const char* name : {"BRDF", "probe", "scene", "points"})
-    html += head_cell(name);
+    html += text_head(name);
   for (std::size_t i = 0; i < levels.size(); ++i)
-    html += head_cell("winner") + head_cell("relMSE") + head_cell("mis ÷ product");
+    html += text_head("winner") + figure_head("relMSE") + figure_head("mis ÷ product");
   html += "</tr></thead><tbody>\n";
   for (const auto& pair : pairs) {
     const Row& row = *pair.front()->winner;
@@ -108,12 +108,12 @@ std::string standings_table(const Plan& plan, const Pairs& time, const Pairs& sa
   const std::string base = renderer::sampler_name(plan.samplers.front());
   const auto by_time = standings(time, base);
   const auto by_samples = standings(samples, base);
-  std::string html = "<table><thead><tr>" + head_cell("") + head_cell("equal time", 2) +
-                     head_cell("equal samples", 2) + head_cell("") + "</tr><tr>" +
-                     head_cell("sampler");
+  std::string html = "<table><thead><tr>" + text_head("") + group_head("equal time", 2) +
+                     group_head("equal samples", 2) + text_head("") + "</tr><tr>" +
+                     text_head("sampler");
   for (int i = 0; i < 2; ++i)
-    html += head_cell("relMSE ÷ that of " + base) + head_cell("wins");
-  html += head_cell("draws from") + "</tr></thead><tbody>\n";
+    html += figure_head("relMSE ÷ " + base + "’s") + figure_head("wins");
+  html += text_head("draws from") + "</tr></thead><tbody>\n";
   for (const renderer::SamplerKind kind : plan.samplers) {
     const std::string name = renderer::sampler_name(kind);
     html += "<tr>" + text_cell(sampler_html(name)) + standing_cells(by_time, name) +

@@ -15,12 +15,11 @@ body { font: 14px/1.45 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu San
 h1 { font-size: 26px; margin: 0 0 4px; } h2 { font-size: 20px; margin: 40px 0 10px; }
 h2 small { font-weight: 400; color: #777; } h3 { font-size: 15px; margin: 24px 0 8px; }
 p, li { max-width: 860px; }
-table { border-collapse: collapse; font-size: 12.5px; font-variant-numeric: tabular-nums; }
-th { text-align: right; font-weight: 600; color: #555; padding: 3px 9px; vertical-align: bottom; }
-th:first-child { text-align: left; }
+table { display: block; overflow-x: auto; border-collapse: collapse; font-size: 12.5px; font-variant-numeric: tabular-nums; }
+th { text-align: left; font-weight: 600; color: #555; padding: 3px 9px; vertical-align: bottom; }
 th.group { text-align: center; border-bottom: 1px solid #bbb; }
 td { padding: 3px 9px; border-top: 1px solid #e8e8e8; white-space: nowrap; }
-td.n { text-align: right; } td.off { color: #c00020; font-weight: 600; }
+td.n, th.n { text-align: right; } td.off { color: #c00020; font-weight: 600; }
 tbody tr:hover { background: #f5f7fa; }
 .swatch { vertical-align: middle; margin-right: 6px; }
 .tag { font-size: 11px; color: #8a5a00; background: #fff1d6; border-radius: 3px; padding: 0 4px; }

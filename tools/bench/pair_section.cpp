@@ -66,15 +66,15 @@ std::string sampler_line(const Row& samples, const Row& time) {
 }
 
 std::string table_head(const Row& samples, const Row& time) {
-  std::string html = "<table><thead><tr>" + head_cell("") +
-                     head_cell("equal samples, " + std::to_string(samples.spp) + " spp", 4) +
-                     head_cell("cost", 4) +
-                     head_cell("equal time, " + number_html(time.budget_seconds) + " s", 5) +
-                     "</tr><tr>";
-  for (const char* name : {"sampler", "relMSE", "variance of a sample", "mean ÷ reference", "slope",
+  std::string html = "<table><thead><tr>" + text_head("") +
+                     group_head("equal samples, " + std::to_string(samples.spp) + " spp", 4) +
+                     group_head("cost", 4) +
+                     group_head("equal time, " + number_html(time.budget_seconds) + " s", 5) +
+                     "</tr><tr>" + text_head("sampler");
+  for (const char* name : {"relMSE", "variance of a sample", "mean ÷ reference", "slope",
                            "ns per sample", "µs per pixel", "set-up s", "trees s", "spp", "s",
                            "relMSE", "mean ÷ reference", "1/(relMSE·s)"})
-    html += head_cell(name);
+    html += figure_head(name);
   return html + "</tr></thead><tbody>\n";
 }
 

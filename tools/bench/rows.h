@@ -34,7 +34,7 @@ struct Row {
   double slope = unknown;          ///< of log relmse over log spp, of equal-samples
   double relmse_stderr = 0;
   double reference_relmse = 0;   ///< already taken off relmse
-  double seconds_per_point = 0;  ///< preparation of a pixel
+  double seconds_per_point = 0;  ///< what is left of a pixel: its preparation
   double precompute_seconds = 0; ///< making the .haar files that the sampler uses
   std::string claim;             ///< unbiased or biased
 };

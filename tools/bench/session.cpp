@@ -61,7 +61,6 @@ Runs Session::run(Points points, int spp, std::uint32_t seed, int count) const {
   Runs result;
   result.spp = spp;
   result.seconds = std::numeric_limits<double>::infinity();
-  result.seconds_per_point = result.seconds;
   RenderOptions options = m_options;
   options.points = points;
   options.spp = spp;
@@ -72,7 +71,6 @@ Runs Session::run(Points points, int spp, std::uint32_t seed, int count) const {
     options.seed = seed + static_cast<std::uint32_t>(k);
     const RenderResult rendered =
         render(*m_scene, *m_factories, options, scene.width, scene.height);
-    const RenderStatistics& s = rendered.statistics;
     if (k == 0) {
       result.pixels = hit_pixels(rendered.film);
       result.first.rgb = rendered.film.rgb;
@@ -80,9 +78,7 @@ Runs Session::run(Points points, int spp, std::uint32_t seed, int count) const {
     add(rendered.film.rgb, 1.0F / static_cast<float>(count), result.mean);
     result.luminances.push_back(luminances_of(rendered.film, result.pixels));
     add_variances(rendered.film, result.pixels, 1.0 / count, result.variances);
-    result.seconds = std::min(result.seconds, s.thread_seconds);
-    result.seconds_per_point = std::min(
-        result.seconds_per_point, s.prepare_seconds / std::max(1.0, static_cast<double>(s.points)));
+    result.seconds = std::min(result.seconds, rendered.statistics.thread_seconds);
   }
   return result;
 }

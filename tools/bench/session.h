@@ -19,7 +19,6 @@ struct Runs {
   std::vector<Pixels> luminances;  ///< of the pixels that hit an object
   Pixels variances;                ///< of those, of one run's mean: estimated within the runs
   double seconds = 0;              ///< of a film: the least of the runs
-  double seconds_per_point = 0;    ///< preparation, the least of the runs
   image::Picture first;            ///< of the first seed
   image::Picture mean;             ///< of all
   std::vector<std::size_t> pixels; ///< indices in the film of those that hit an object

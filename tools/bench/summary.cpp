@@ -1,6 +1,7 @@
 #include <bench/summary.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace haarlight::bench {
 namespace {
@@ -46,21 +47,26 @@ std::vector<Verdict> verdicts_of(const std::vector<Row>& rows) {
 }
 
 tool::Report describe(const std::vector<Verdict>& verdicts) {
+  const bool rivals = std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict& verdict) {
+    return std::isfinite(verdict.product_over_mis);
+  });
   tool::Report report;
   for (const Verdict& verdict : verdicts) {
     const Row& row = *verdict.winner;
-    report.row("pairs")
-        .add("brdf", row.brdf)
+    const bool time = row.mode == "equal-time";
+    tool::Report& line = report.row(time ? "equal_time" : "equal_samples");
+    line.add("brdf", row.brdf)
         .add("probe", row.probe)
         .add("scene", row.scene)
-        .add("points", row.points)
-        .add("mode", row.mode)
-        .add("spp", row.spp)
-        .add("budget_seconds", row.budget_seconds)
+        .add("points", row.points);
+    if (time)
+      line.add("budget_seconds", row.budget_seconds);
+    line.add("spp", row.spp)
         .add("winner", row.sampler)
         .add("claim", row.claim)
-        .add("relmse", row.relmse)
-        .add("product_over_mis", verdict.product_over_mis);
+        .add("relmse", row.relmse);
+    if (rivals)
+      line.add("product_over_mis", verdict.product_over_mis);
   }
   return report;
 }

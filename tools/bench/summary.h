@@ -22,7 +22,8 @@ struct Verdict {
 /// @param rows must outlive the result
 std::vector<Verdict> verdicts_of(const std::vector<Row>& rows);
 
-/// What haarbench prints: a list "pairs" of verdicts.
+/// What haarbench prints: lists "equal_samples" and "equal_time" of verdicts; product_over_mis only
+/// where both took part.
 tool::Report describe(const std::vector<Verdict>& verdicts);
 
 } // namespace haarlight::bench
