@@ -30,6 +30,8 @@ Row row_of(const Row& common, const std::string& mode, const Runs& runs,
 void set_slopes(std::vector<Row>& rows) {
   std::vector<double> spps;
   std::vector<double> errors;
+  spps.reserve(rows.size());
+  errors.reserve(rows.size());
   for (const Row& row : rows) {
     spps.push_back(row.spp);
     errors.push_back(row.relmse);

@@ -69,6 +69,10 @@ std::string number_html(double number) {
   return text.substr(0, e) + "·10<sup>" + std::to_string(std::stoi(text.substr(e + 1))) + "</sup>";
 }
 
+std::string ratio_html(double number) {
+  return std::isfinite(number) ? formatted("%.4f", number) : "–";
+}
+
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text)

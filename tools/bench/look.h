@@ -30,6 +30,9 @@ std::string number_html(double number);
 /// A text's &, <, > and quotes made harmless.
 std::string escaped(const std::string& text);
 
+/// Four decimals, as in 0.9987; a dash for what is unknown.
+std::string ratio_html(double number);
+
 /// Fixed point, for coordinates.
 std::string fixed(double number);
 

@@ -106,6 +106,7 @@ private:
 
   void add_equal_samples(const std::vector<Runs>& all) {
     std::vector<Row> rows;
+    rows.reserve(all.size());
     for (const Runs& runs : all)
       rows.push_back(row_of(m_sampler, "equal-samples", runs, m_reference));
     set_slopes(rows);

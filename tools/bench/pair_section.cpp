@@ -48,7 +48,7 @@ std::string ratio_cell(const Row& row) {
   const double off = std::abs(row.mean_ratio - 1);
   const bool significant = off > 4 * row.mean_ratio_stderr;
   return std::string("<td class=\"n") + (significant ? " off" : "") + "\">" +
-         number_html(row.mean_ratio) + " ± " + number_html(row.mean_ratio_stderr) + "</td>";
+         ratio_html(row.mean_ratio) + " ± " + ratio_html(row.mean_ratio_stderr) + "</td>";
 }
 
 std::string sampler_line(const Row& samples, const Row& time) {

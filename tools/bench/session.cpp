@@ -42,6 +42,7 @@ void add_variances(const Film& film, const std::vector<std::size_t>& pixels, dou
 
 std::vector<double> seconds_of(const std::vector<Runs>& all) {
   std::vector<double> seconds;
+  seconds.reserve(all.size());
   for (const Runs& runs : all)
     seconds.push_back(runs.seconds);
   return seconds;
