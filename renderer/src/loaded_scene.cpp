@@ -2,6 +2,8 @@
 
 #include <wavelet/error.h>
 
+#include <ctime>
+
 namespace haarlight::renderer {
 
 LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookups& lookups,
@@ -12,6 +14,7 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
   m_materials.reserve(description.materials.size());
   for (const MaterialDescription& material : description.materials)
     m_materials.emplace_back(material, lookups.brdf);
+  const std::clock_t start = std::clock();
   if (needs(sampler, NeedsLightDistribution))
     m_light.need_distribution();
   if (needs(sampler, NeedsLightTree) || unshadowed_product)
@@ -27,6 +30,8 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
       material.need_roll_table();
     check_tables(traits(sampler).name);
   }
+  m_preparation_seconds =
+      static_cast<double>(std::clock() - start) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
 void LoadedScene::check_tables(const std::string& sampler) const {
@@ -37,10 +42,13 @@ void LoadedScene::check_tables(const std::string& sampler) const {
                           " needs: a .haar made by probe2maps --orientations M");
   for (std::size_t i = 0; i < m_materials.size(); ++i) {
     const TreeTable* rolls = m_materials[i].roll_table();
-    const std::string where = "materials." + m_materials[i].name();
     if (rolls == nullptr)
-      throw_input_error(m_description.path, where + ": names no \"table\", which " + sampler +
-                                                " needs: a .haar made by brdf2maps --roll N");
+      throw_input_error(m_description.path,
+                        std::string("materials.")
+                            .append(m_materials[i].name())
+                            .append(": names no \"table\", which ")
+                            .append(sampler)
+                            .append(" needs: a .haar made by brdf2maps --roll N"));
   }
 }
 

@@ -20,9 +20,9 @@ constexpr std::array<std::pair<const char*, Estimator>, 3> estimator_names = {
      {"bidirectional", Estimator::Bidirectional},
      {"ratio", Estimator::Ratio}}};
 
-/// Processor time of this thread, which other programs' load leaves alone.
-double thread_seconds() {
-  timespec now = {};
+/// What this thread has computed so far; other programs on the machine do not count.
+double thread_cpu_seconds() {
+  timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
@@ -45,35 +45,17 @@ struct TileCost {
   std::uint64_t leaves = 0;
 };
 
-/// What all threads' samplers come from.
-struct Factories {
-  Factories(const LoadedScene& scene, const RenderOptions& options)
-      : sampler(make_sampler_factory(options.sampler, scene, sampling_of(options))) {
-    if (needs_unshadowed(options.estimator) && !traits(options.sampler).follows_product)
-      integrator = make_sampler_factory(SamplerKind::Product, scene, options.sampling);
-  }
-
-  static SamplerOptions sampling_of(const RenderOptions& options) {
-    SamplerOptions result = options.sampling;
-    result.count = static_cast<std::size_t>(options.spp);
-    return result;
-  }
-
-  std::unique_ptr<SamplerFactory> sampler;
-  std::unique_ptr<SamplerFactory> integrator; ///< of L_ns, where the sampler has none
-};
-
 /// Renders tiles of one pass; one for each thread at a time.
 class TileRenderer {
 public:
   TileRenderer(const LoadedScene& scene, const RenderOptions& options, const Camera& camera,
-               const Factories& factories, Film& film, std::vector<PixelSums>& sums)
+               const RenderFactories& factories, Film& film, std::vector<PixelSums>& sums)
       : m_scene(scene), m_options(options), m_camera(camera), m_film(film), m_sums(sums),
         m_sampler(factories.sampler->make()),
         m_integrator(factories.integrator ? factories.integrator->make() : nullptr) {}
 
   TileCost render(int x0, int y0, const Pass& pass) {
-    const double start = thread_seconds();
+    const double start = thread_cpu_seconds();
     m_cost = {};
     m_sampler->forget();
     if (m_integrator)
@@ -82,7 +64,7 @@ public:
     for (int y = y0; y < std::min(y0 + tile_side, m_film.height); ++y)
       for (int i = 0; i < width; ++i) // to and fro: each pixel beside the last
         pixel((y - y0) % 2 == 0 ? x0 + i : x0 + width - 1 - i, y, pass);
-    m_cost.seconds = thread_seconds() - start;
+    m_cost.seconds = thread_cpu_seconds() - start;
     return m_cost;
   }
 
@@ -165,10 +147,10 @@ private:
 /// One rendering from first pass to finished film.
 class Rendering {
 public:
-  Rendering(const LoadedScene& scene, const RenderOptions& options, int width, int height,
-            const RenderProgress& progress)
+  Rendering(const LoadedScene& scene, const RenderFactories& factories,
+            const RenderOptions& options, int width, int height, const RenderProgress& progress)
       : m_scene(scene), m_options(options), m_camera(scene.description().camera, width, height),
-        m_factories(scene, options), m_progress(progress),
+        m_factories(factories), m_progress(progress),
         m_sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     m_result.film = Film(width, height);
   }
@@ -262,12 +244,18 @@ private:
   const LoadedScene& m_scene;
   const RenderOptions& m_options;
   Camera m_camera;
-  Factories m_factories;
+  const RenderFactories& m_factories;
   const RenderProgress& m_progress;
   std::vector<PixelSums> m_sums;
   std::uint64_t m_leaves = 0;
   RenderResult m_result;
 };
+
+SamplerOptions sampling_of(const RenderOptions& options) {
+  SamplerOptions result = options.sampling;
+  result.count = static_cast<std::size_t>(options.spp);
+  return result;
+}
 
 } // namespace
 
@@ -290,9 +278,21 @@ std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator) 
   return std::nullopt;
 }
 
+RenderFactories::RenderFactories(const LoadedScene& scene, const RenderOptions& options)
+    : sampler(make_sampler_factory(options.sampler, scene, sampling_of(options))) {
+  if (needs_unshadowed(options.estimator) && !traits(options.sampler).follows_product)
+    integrator = make_sampler_factory(SamplerKind::Product, scene, options.sampling);
+}
+
+RenderResult render(const LoadedScene& scene, const RenderFactories& factories,
+                    const RenderOptions& options, int width, int height,
+                    const RenderProgress& progress) {
+  return Rendering(scene, factories, options, width, height, progress).run();
+}
+
 RenderResult render(const LoadedScene& scene, const RenderOptions& options, int width, int height,
                     const RenderProgress& progress) {
-  return Rendering(scene, options, width, height, progress).run();
+  return render(scene, RenderFactories(scene, options), options, width, height, progress);
 }
 
 } // namespace haarlight::renderer

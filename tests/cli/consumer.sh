@@ -13,7 +13,7 @@ cmake -S "$source/tests/consumer" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=R
 cmake --build "$work/build" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 "$work/build/consumer"
 cd "$work"
-for tool in brdfsynth probesynth brdf2maps probe2maps maps2haar haarinfo haarrender haarsheet; do
+for tool in brdfsynth probesynth brdf2maps probe2maps maps2haar haarinfo haarrender haarsheet haarbench; do
   "$work/prefix/bin/$tool" --version
 done
 "$work/prefix/bin/probesynth" --scene studio --size 64 -o studio.hdr >/dev/null

@@ -73,18 +73,24 @@ unsigned char srgb_code(float linear) {
 
 float srgb_value(unsigned char code) { return static_cast<float>(linear_of(code)); }
 
-void write_png(const std::string& path, const Picture& picture, const PngOptions& options) {
-  OutputFile file(path);
+std::string png_bytes(const Picture& picture, const PngOptions& options) {
   png_image image = description(picture.width, picture.height);
   Picture toned = picture;
   tone_map(toned, options);
   std::vector<unsigned char> codes(toned.rgb.size());
   std::transform(toned.rgb.begin(), toned.rgb.end(), codes.begin(), srgb_code);
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::vector<char> encoded(size);
+  std::string encoded(size, '\0');
   if (png_image_write_to_memory(&image, encoded.data(), &size, 0, codes.data(), 0, nullptr) == 0)
-    throw_output_error(path, std::string("cannot be encoded as PNG: ") + image.message);
-  file.write(encoded.data(), size);
+    throw_output_error({}, std::string("cannot be encoded as PNG: ") + image.message);
+  encoded.resize(size);
+  return encoded;
+}
+
+void write_png(const std::string& path, const Picture& picture, const PngOptions& options) {
+  OutputFile file(path);
+  const std::string encoded = png_bytes(picture, options);
+  file.write(encoded.data(), encoded.size());
   file.commit();
 }
 

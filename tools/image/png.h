@@ -25,6 +25,9 @@ unsigned char srgb_code(float linear);
 /// The linear value of a code; srgb_code() of it is the code again.
 float srgb_value(unsigned char code);
 
+/// A PNG file in memory; bytes depend on picture and options only. @throws Error(Output)
+std::string png_bytes(const Picture& picture, const PngOptions& options = {});
+
 /// Writes the picture whole or not at all; bytes depend on picture and options only.
 /// @throws Error(Output)
 void write_png(const std::string& path, const Picture& picture, const PngOptions& options = {});

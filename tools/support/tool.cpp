@@ -65,6 +65,11 @@ void Tool::texts(std::vector<std::string>& texts, const std::string& names,
   m_parser->app.add_option(names, texts, help)->type_name(placeholder)->expected(1)->take_all();
 }
 
+void Tool::text_list(std::vector<std::string>& texts, const std::string& names,
+                     const std::string& placeholder, const std::string& help) {
+  m_parser->app.add_option(names, texts, help)->type_name(placeholder)->expected(1, 1 << 20);
+}
+
 void Tool::flag(bool& flag, const std::string& names, const std::string& help) {
   m_parser->app.add_flag(names, flag, help);
 }

@@ -74,6 +74,9 @@ public:
   /// Any text, given any number of times.
   void texts(std::vector<std::string>& texts, const std::string& names,
              const std::string& placeholder, const std::string& help);
+  /// The same, with one or more texts each time.
+  void text_list(std::vector<std::string>& texts, const std::string& names,
+                 const std::string& placeholder, const std::string& help);
   void flag(bool& flag, const std::string& names, const std::string& help);
 
   /// One of a few names, each standing for a value.

@@ -40,6 +40,9 @@ public:
   }
   const std::vector<Material>& materials() const { return m_materials; }
 
+  /// CPU time that making what the sampler needs took, reading files apart.
+  double preparation_seconds() const { return m_preparation_seconds; }
+
 private:
   void check_tables(const std::string& sampler) const;
 
@@ -47,6 +50,7 @@ private:
   ShapeSet m_shapes;
   Light m_light;
   std::vector<Material> m_materials;
+  double m_preparation_seconds = 0;
 };
 
 } // namespace haarlight::renderer

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -52,7 +53,7 @@ struct RenderOptions {
 struct RenderStatistics {
   double seconds = 0;         ///< wall clock of all passes
   double prepare_seconds = 0; ///< of that, summed over threads: turning samplers to points
-  double thread_seconds = 0;  ///< processor time of all work, summed over threads
+  double thread_seconds = 0;  ///< all work, CPU time summed over threads
   std::uint64_t points = 0;   ///< prepared, over all passes
   std::uint64_t samples = 0;
   double mean_leaves = 0; ///< of products
@@ -67,6 +68,17 @@ struct RenderResult {
   RenderStatistics statistics;
 };
 
+/// What the samplers of all threads share. Made once, it serves any number of renderings of its
+/// scene with the same sampler, estimator and sampling options.
+struct RenderFactories {
+  /// @param scene loaded for options.sampler and the estimator; must outlive this
+  /// @throws as make_sampler_factory()
+  RenderFactories(const LoadedScene& scene, const RenderOptions& options);
+
+  std::unique_ptr<SamplerFactory> sampler;
+  std::unique_ptr<SamplerFactory> integrator; ///< of L_ns, where the sampler has none
+};
+
 /// Called with the share of the work that is done, in [0, 1]; from any thread.
 using RenderProgress = std::function<void(double)>;
 
@@ -74,6 +86,10 @@ using RenderProgress = std::function<void(double)>;
 /// @param scene loaded for options.sampler and the estimator
 /// @param width,height of the film in pixels
 RenderResult render(const LoadedScene& scene, const RenderOptions& options, int width, int height,
+                    const RenderProgress& progress = {});
+/// The same with factories made before.
+RenderResult render(const LoadedScene& scene, const RenderFactories& factories,
+                    const RenderOptions& options, int width, int height,
                     const RenderProgress& progress = {});
 
 } // namespace haarlight::renderer

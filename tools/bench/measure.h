@@ -1,0 +1,44 @@
+#pragma once
+// The measurement of one BRDF under one probe in one scene.
+
+#include <bench/pairs.h>
+#include <bench/plan.h>
+#include <bench/rows.h>
+
+#include <image/image.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace haarlight::bench {
+
+/// A picture of one sampler, of the smallest budget at equal time.
+struct Exhibit {
+  renderer::SamplerKind sampler = renderer::SamplerKind::Product;
+  int spp = 0;
+  double relmse = 0;
+  image::Picture picture;
+};
+
+struct PairResult {
+  std::string brdf;
+  std::string probe;
+  std::string scene;
+  std::string light_note; ///< how the probe was read
+  std::vector<Row> rows;
+  image::Picture reference;
+  std::vector<bool> hit; ///< pixels that show an object
+  std::vector<Exhibit> exhibits;
+};
+
+/// Called with units of work done, of those that work_units() tells.
+using WorkDone = std::function<void(double units)>;
+
+/// Renders the reference, then every sampler at equal samples and at equal time.
+/// @param scene a word as scene_of() takes
+/// @throws Error(Input) if a scene lacks what a sampler needs, or no pixel hits an object
+PairResult measure_pair(const Plan& plan, const Entry& brdf, const Entry& probe,
+                        const std::string& scene, const WorkDone& done);
+
+} // namespace haarlight::bench

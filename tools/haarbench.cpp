@@ -1,0 +1,95 @@
+// haarbench: compares samplers at equal samples and at equal time.
+#include <bench/cache.h>
+#include <bench/measure.h>
+#include <bench/page.h>
+#include <bench/pairs.h>
+#include <bench/plan.h>
+#include <bench/scenes.h>
+#include <bench/summary.h>
+#include <bench/text_file.h>
+#include <render/film_output.h>
+#include <support/program.h>
+#include <support/progress.h>
+
+#include <wavelet/error.h>
+
+#include <filesystem>
+
+using namespace haarlight;
+using namespace haarlight::bench;
+
+namespace {
+
+/// Makes the folders and throws now rather than after the work if nothing can be written there.
+void require_writable(const std::string& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder + "/cache", problem);
+  if (problem)
+    throw_output_error(folder, "cannot be made a folder: " + problem.message());
+  for (const char* name : {"/results.json", "/results.csv", "/report.html"})
+    const OutputFile trial(folder + name);
+}
+
+/// A scene file that is broken is told of before any long work, too.
+void check_scenes(const Plan& plan) {
+  for (const std::string& word : plan.scenes) {
+    renderer::SceneDescription scene = scene_of(word);
+    tool::set_film_size(plan.size, scene);
+  }
+}
+
+std::vector<PairResult> measure_all(const tool::Tool& app, const Plan& plan,
+                                    const Collection& collection) {
+  const std::size_t count = collection.brdfs.size() * collection.probes.size() * plan.scenes.size();
+  const double total = work_units(plan) * static_cast<double>(count);
+  double done = 0;
+  tool::ProgressBar bar(app, "measuring");
+  const WorkDone work = [&](double units) {
+    done += units;
+    bar(static_cast<int>(10000 * std::min(1.0, done / total)), 10000);
+  };
+  std::vector<PairResult> pairs;
+  for (const Entry& brdf : collection.brdfs)
+    for (const Entry& probe : collection.probes)
+      for (const std::string& scene : plan.scenes) {
+        pairs.push_back(measure_pair(plan, brdf, probe, scene, work));
+        const PairResult& pair = pairs.back();
+        if (!pair.light_note.empty())
+          app.detail(probe.subject.path + ": " + pair.light_note);
+        app.detail(pair.brdf + ", " + pair.probe + ", " + pair.scene + ": done");
+      }
+  return pairs;
+}
+
+std::vector<Row> rows_of(const std::vector<PairResult>& pairs) {
+  std::vector<Row> rows;
+  for (const PairResult& pair : pairs)
+    rows.insert(rows.end(), pair.rows.begin(), pair.rows.end());
+  return rows;
+}
+
+int compare_samplers(const tool::Tool& app, Plan& plan) {
+  check(plan);
+  check_scenes(plan);
+  Collection collection = open_subjects(plan);
+  require_writable(plan.folder);
+  make_trees(plan, Cache(app, plan.folder + "/cache", plan.cache), collection);
+  const std::vector<PairResult> pairs = measure_all(app, plan, collection);
+  const std::vector<Row> rows = rows_of(pairs);
+  const std::vector<Verdict> verdicts = verdicts_of(rows);
+  write_text(plan.folder + "/results.json", json_text(rows));
+  write_text(plan.folder + "/results.csv", csv_text(rows));
+  write_text(plan.folder + "/report.html", page_html(plan, pairs, verdicts));
+  app.print(describe(verdicts));
+  return tool::exit_ok;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  return tool::run_program(
+      argc, argv, "haarbench",
+      "Renders every BRDF under every probe with every sampler, at equal samples and at equal "
+      "time, and reports errors and costs; tools/HAARBENCH.md tells what the figures are.",
+      declare, compare_samplers);
+}
