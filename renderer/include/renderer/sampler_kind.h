@@ -8,7 +8,18 @@
 
 namespace haarlight::renderer {
 
-enum class SamplerKind : std::uint8_t { Product, ProductTable, Light, Brdf, Mis };
+enum class SamplerKind : std::uint8_t {
+  Product,
+  ProductTable,
+  Light,
+  Brdf,
+  Mis,
+  MisPower,
+  BisReject,
+  BisSir,
+  Ris,
+  TwoStage
+};
 
 /// What a sampler wants made when a scene is loaded; bits.
 enum SamplerNeed : unsigned {

@@ -34,5 +34,10 @@ MakeFactory make_brdf_factory;
 MakeFactory make_mis_factory;
 MakeFactory make_product_factory;
 MakeFactory make_product_table_factory;
+MakeFactory make_mis_power_factory;
+MakeFactory make_bis_reject_factory;
+MakeFactory make_bis_sir_factory;
+MakeFactory make_ris_factory;
+MakeFactory make_two_stage_factory;
 
 } // namespace haarlight::renderer
