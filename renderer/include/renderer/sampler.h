@@ -67,7 +67,7 @@ public:
 struct SamplerOptions {
   wavelet::AdaptiveOptions product;
   int candidates = 16; ///< of resampling samplers for each sample, at most; above 0
-  int regions = 256;   ///< that two-stage divides the light into, at most; 4 or more
+  int regions = 512;   ///< that two-stage divides the light into, at most; 4 or more
 };
 
 /// What the samplers of all threads share, made once for a scene; makes each thread's own.

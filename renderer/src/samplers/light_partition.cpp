@@ -41,36 +41,42 @@ bool choose_second(double first, double second, double& u) {
 } // namespace
 
 void LightPartition::build(const ShadingPoint& point, const Material& material,
-                           const LobePeak& peak, std::size_t regions) {
-  start(point, material, peak);
-  while (!m_queue.empty() && this->regions() + 3 * batch <= std::max<std::size_t>(regions, 4) &&
-         !is_fine())
+                           std::span<const Vec3> marks, std::size_t regions) {
+  m_point = &point;
+  m_material = &material;
+  evaluate_marks(marks);
+  start();
+  while (!m_queue.empty() && this->regions() + 3 * batch <= regions && !is_fine())
     split_batch();
   sum_products();
 }
 
-void LightPartition::start(const ShadingPoint& point, const Material& material,
-                           const LobePeak& peak) {
-  m_point = &point;
-  m_material = &material;
+void LightPartition::evaluate_marks(std::span<const Vec3> marks) {
+  m_marks.resize(marks.size());
+  m_directions.assign(marks.begin(), marks.end());
+  evaluate();
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    const auto [x, y] = m_picture.pixel(probe::direction_to_image(m_picture.mapping, marks[i]));
+    m_marks[i] = {x, y, m_reflected[i]};
+  }
+}
+
+/// One rectangle, the whole picture.
+void LightPartition::start() {
   m_nodes.clear();
   m_queue.clear();
   m_error = 0;
   m_product = 0;
-  const Frame& frame = point.reflection.frame;
-  m_directions = {frame.to_outer(peak.direction), frame.n};
-  for (std::size_t i = 0; i < 2; ++i)
-    std::tie(m_peaks[i].x, m_peaks[i].y) =
-        m_picture.pixel(probe::direction_to_image(m_picture.mapping, m_directions[i]));
   const PixelRange all = {0, 0, m_picture.sums.width(), m_picture.sums.height()};
   for (int i = 0; i < 4; ++i)
     request(static_cast<float>(i % 2 == 0 ? all.x0 : all.x1),
             static_cast<float>(i < 2 ? all.y0 : all.y1));
   request_centre(all);
   evaluate();
-  m_peaks[0].value = m_reflected[0];
-  m_peaks[1].value = m_reflected[1];
-  add(all, {{m_reflected[2], m_reflected[3], m_reflected[4], m_reflected[5]}, m_reflected[6]});
+  Values values;
+  std::copy_n(m_reflected.begin(), 4, values.corner);
+  values.centre = m_reflected[4];
+  add(all, values);
 }
 
 void LightPartition::request(float x, float y) {
@@ -169,11 +175,11 @@ double LightPartition::judge(Node& node) const {
   float high = std::max(*most, v.centre);
   float sum = v.corner[0] + v.corner[1] + v.corner[2] + v.corner[3] + 4.0F * v.centre;
   float count = 8;
-  for (const Peak& peak : m_peaks)
-    if (contains(node.range, peak.x, peak.y)) {
-      low = std::min(low, peak.value);
-      high = std::max(high, peak.value);
-      sum += peak.value;
+  for (const Mark& mark : m_marks)
+    if (contains(node.range, mark.x, mark.y)) {
+      low = std::min(low, mark.value);
+      high = std::max(high, mark.value);
+      sum += mark.value;
       count += 1;
     }
   node.mean = sum / count;

@@ -3,7 +3,8 @@
 // there is light, and the product of both over each.
 
 #include "light_sums.h"
-#include "lobe_peaks.h"
+
+#include <renderer/material.h>
 
 #include <span>
 #include <vector>
@@ -26,16 +27,15 @@ struct LightPicture {
 };
 
 /// A quadtree of rectangles. Each guesses the mean of f_r cos (luminance) over itself from its
-/// corners, its centre and the reflectance's peaks inside; the one whose values differ most, times
+/// corners, its centre and the marks inside; the one whose values differ most, times
 /// its light, is divided next. All densities are exactly those of the descent.
 class LightPartition {
 public:
   explicit LightPartition(const LightPicture& picture) : m_picture(picture) {}
 
-  /// @param peak where the reflectance may rise where no corner sees it, besides the mirror
-  /// direction
+  /// @param marks directions where the reflectance may rise where no corner sees it
   /// @param regions undivided rectangles at most, 4 or more
-  void build(const ShadingPoint& point, const Material& material, const LobePeak& peak,
+  void build(const ShadingPoint& point, const Material& material, std::span<const Vec3> marks,
              std::size_t regions);
 
   /// Warps a point of the unit square through the tree, then through the light of the region.
@@ -68,12 +68,14 @@ private:
     int node;
     bool operator<(const Entry& other) const { return error < other.error; }
   };
-  struct Peak {
-    int x, y; ///< pixel
-    float value;
+  struct Mark {
+    int x = 0; ///< pixel
+    int y = 0;
+    float value = 0;
   };
 
-  void start(const ShadingPoint& point, const Material& material, const LobePeak& peak);
+  void start();
+  void evaluate_marks(std::span<const Vec3> marks);
   bool is_fine() const;
   void split_batch();
   void split(int node, std::span<const float> fresh);
@@ -89,7 +91,7 @@ private:
   const LightPicture& m_picture;
   const ShadingPoint* m_point = nullptr;
   const Material* m_material = nullptr;
-  Peak m_peaks[2] = {};
+  std::vector<Mark> m_marks;
   std::vector<Node> m_nodes;
   std::vector<Entry> m_queue; ///< a heap
   double m_error = 0;         ///< of all undivided rectangles

@@ -37,10 +37,7 @@ LobePeak find_peak(const ShadingPoint& point, const Material& material) {
     const float value = luminance(values[i]);
     if (i < samples.size() && samples[i].pdf > 0)
       peak.albedo += value / samples[i].pdf / static_cast<float>(directions_tried);
-    if (value > peak.value) {
-      peak.value = value;
-      peak.direction = point.reflection.frame.to_local(directions[i]);
-    }
+    peak.value = std::max(peak.value, value);
   }
   return peak;
 }

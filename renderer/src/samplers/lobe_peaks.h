@@ -1,6 +1,5 @@
 #pragma once
-// How high reflectances rise and where, by θ_r: what samplers that bound or search a reflectance
-// start from.
+// How high reflectances rise, by θ_r: what samplers that bound a reflectance start from.
 
 #include <renderer/loaded_scene.h>
 
@@ -10,9 +9,8 @@ namespace haarlight::renderer {
 
 /// Of f_r cos seen at one θ_r, luminance.
 struct LobePeak {
-  Vec3 direction = Vec3::UnitZ(); ///< of the highest value found, in the reflection frame
-  float value = 0;                ///< there, sr⁻¹
-  float albedo = 0;               ///< ∫ f_r cos dω
+  float value = 0;  ///< the highest found, sr⁻¹
+  float albedo = 0; ///< ∫ f_r cos dω
 };
 
 /// The peaks of a scene's materials, found by drawing directions from their trees and evaluating

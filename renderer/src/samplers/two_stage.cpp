@@ -4,10 +4,9 @@
 
 #include "kinds.h"
 #include "light_partition.h"
+#include "lobe_sampling.h"
 
 #include <wavelet/sphere_map.h>
-
-#include <algorithm>
 
 namespace haarlight::renderer {
 namespace {
@@ -26,29 +25,28 @@ probe::Probe picture_of(const wavelet::TreeView& tree) {
   return {image, probe::Mapping::Octahedral};
 }
 
-LightPicture light_picture(const Light& light) {
+std::shared_ptr<const LightPicture> light_picture(const Light& light) {
   if (light.probe() != nullptr)
-    return LightPicture(*light.probe());
-  return LightPicture(picture_of(light.tree()));
+    return std::make_shared<const LightPicture>(*light.probe());
+  return std::make_shared<const LightPicture>(picture_of(light.tree()));
 }
-
-/// What all threads share.
-struct SharedParts {
-  LightPicture picture;
-  LobePeaks peaks;
-
-  explicit SharedParts(const LoadedScene& scene)
-      : picture(light_picture(scene.light())), peaks(scene) {}
-};
 
 class TwoStageSampler : public Sampler {
 public:
-  TwoStageSampler(std::shared_ptr<const SharedParts> shared, int regions)
-      : m_shared(std::move(shared)), m_regions(static_cast<std::size_t>(regions)),
-        m_partition(m_shared->picture) {}
+  TwoStageSampler(std::shared_ptr<const LightPicture> picture, int regions)
+      : m_picture(std::move(picture)), m_regions(static_cast<std::size_t>(regions)),
+        m_partition(*m_picture), m_mark_points(marks_of_lobe), m_mark_samples(marks_of_lobe) {
+    fill_points(Points::Sobol, 0, 0, m_mark_points);
+  }
 
+  /// The partition's marks are the mirror direction and what the reflectance's own tree draws.
   void prepare(const ShadingPoint& point, const Material& material) override {
-    m_partition.build(point, material, m_shared->peaks.at(point, material), m_regions);
+    m_lobe.prepare(point, material);
+    m_lobe.sample(m_mark_points, m_mark_samples);
+    m_marks.assign(1, point.reflection.frame.n);
+    for (const DirectionSample& s : m_mark_samples)
+      m_marks.push_back(s.direction);
+    m_partition.build(point, material, m_marks, m_regions);
   }
 
   void sample(const PointSource& points, std::span<DirectionSample> out) override {
@@ -56,20 +54,26 @@ public:
     points.fill(2, m_points);
     for (std::size_t i = 0; i < out.size(); ++i) {
       const Vec2 uv = m_partition.sample(m_points[i], out[i].pdf);
-      out[i].direction = probe::image_to_direction(m_shared->picture.mapping, uv);
+      out[i].direction = probe::image_to_direction(m_picture->mapping, uv);
     }
   }
 
   float pdf(const Vec3& direction, std::size_t /*count*/) const override {
-    return m_partition.pdf(probe::direction_to_image(m_shared->picture.mapping, direction));
+    return m_partition.pdf(probe::direction_to_image(m_picture->mapping, direction));
   }
 
   std::size_t leaves() const override { return m_partition.regions(); }
 
 private:
-  std::shared_ptr<const SharedParts> m_shared;
+  static constexpr std::size_t marks_of_lobe = 15;
+
+  std::shared_ptr<const LightPicture> m_picture;
   std::size_t m_regions;
   LightPartition m_partition;
+  Lobe m_lobe;
+  std::vector<Vec2> m_mark_points;
+  std::vector<DirectionSample> m_mark_samples;
+  std::vector<Vec3> m_marks;
   std::vector<Vec2> m_points;
 };
 
@@ -77,8 +81,7 @@ private:
 
 std::unique_ptr<SamplerFactory> make_two_stage_factory(const LoadedScene& scene,
                                                        const SamplerOptions& options) {
-  return simple_factory<TwoStageSampler>(std::make_shared<const SharedParts>(scene),
-                                         options.regions);
+  return simple_factory<TwoStageSampler>(light_picture(scene.light()), options.regions);
 }
 
 } // namespace haarlight::renderer
