@@ -47,6 +47,11 @@ void declare_sampling(tool::Tool& app, RenderOptions& render) {
             1e-5, 100);
   app.value(render.sampling.product.max_leaves, "--product-leaves", "Leaves of a product at most",
             64, 1 << 20);
+  app.value(render.sampling.candidates, "--candidates",
+            "Candidates for each sample, of samplers that resample: bis-reject, bis-sir, ris", 1,
+            4096);
+  app.value(render.sampling.regions, "--regions", "Regions that two-stage divides the probe into",
+            4, 1 << 20);
 }
 
 void declare(tool::Tool& app, Options& options) {

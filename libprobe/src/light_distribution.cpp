@@ -11,22 +11,6 @@
 #include <numeric>
 
 namespace haarlight::probe {
-namespace {
-
-/// What a pixel adds to the light: its luminance, or the mean of the interpolated one.
-double pixel_luminance(const Probe& probe, int x, int y) {
-  if (probe.lookup() == Lookup::Nearest)
-    return luminance(probe.pixel(x, y));
-  constexpr double weights[3] = {0.125, 0.75, 0.125};
-  double sum = 0;
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i)
-      sum += weights[i + 1] * weights[j + 1] * luminance(probe.pixel(x + i, y + j));
-  return sum;
-}
-
-} // namespace
-
 LightDistribution::LightDistribution(const Probe& probe)
     : m_mapping(probe.mapping()), m_width(probe.width()), m_height(probe.height()),
       m_rows(static_cast<std::size_t>(m_height) + 1),
@@ -39,7 +23,7 @@ LightDistribution::LightDistribution(const Probe& probe)
   parallel_for(rows.size(), [&](std::size_t y) {
     std::vector<double> weights(width);
     for (int x = 0; x < m_width; ++x)
-      weights[static_cast<std::size_t>(x)] = pixel_luminance(probe, x, static_cast<int>(y)) *
+      weights[static_cast<std::size_t>(x)] = probe.mean_luminance(x, static_cast<int>(y)) *
                                              probe.pixel_solid_angle(x, static_cast<int>(y));
     std::uint32_t* cdf = m_columns.data() + y * (width + 1);
     accumulate(weights, cdf);

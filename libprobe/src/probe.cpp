@@ -180,6 +180,17 @@ Rgb Probe::interpolated(const Vec2& uv) const {
          t * ((1 - s) * pixel(x - 1, y) + s * pixel(x, y));
 }
 
+double Probe::mean_luminance(int x, int y) const {
+  if (m_lookup == Lookup::Nearest)
+    return luminance(pixel(x, y));
+  constexpr double weights[3] = {0.125, 0.75, 0.125};
+  double sum = 0;
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i)
+      sum += weights[i + 1] * weights[j + 1] * luminance(pixel(x + i, y + j));
+  return sum;
+}
+
 double Probe::pixel_solid_angle(int x, int y) const {
   assert(x >= 0 && x < m_width && y >= 0 && y < m_height);
   if (m_mapping == Mapping::LatLong)

@@ -48,6 +48,10 @@ public:
     return x >= 0 && y >= 0 && x < m_width && y < m_height && in_map(m_mapping, centre(x, y));
   }
 
+  /// Mean luminance over a pixel as radiance() shows it, 0 ≤ x < width and 0 ≤ y < height: its own,
+  /// or with Bilinear that of the interpolation. Positive wherever radiance is.
+  double mean_luminance(int x, int y) const;
+
   /// Direction of a pixel's centre.
   Vec3 direction(int x, int y) const { return image_to_direction(m_mapping, centre(x, y)); }
 

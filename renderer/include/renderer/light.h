@@ -33,6 +33,9 @@ public:
   /// After need_tree().
   const wavelet::TreeView& tree() const { return m_map->tree(0, 0); }
 
+  /// The picture it is looked up in, in the light's own frame, if there is one.
+  const probe::Probe* probe() const { return m_probe ? &*m_probe : nullptr; }
+
   /// The paper's table of rotated maps, if the scene names one.
   const TreeTable* rotated_table() const { return m_rotated ? &*m_rotated : nullptr; }
 

@@ -19,7 +19,12 @@ enum class SamplerKind : std::uint8_t {
   MedianCut,
   KolligKeller,
   Structured,
-  Ostromoukhov
+  Ostromoukhov,
+  MisPower,
+  BisReject,
+  BisSir,
+  Ris,
+  TwoStage
 };
 
 /// What a sampler wants made when a scene is loaded; bits.

@@ -40,5 +40,10 @@ MakeFactory make_median_cut_factory;
 MakeFactory make_kollig_keller_factory;
 MakeFactory make_structured_factory;
 MakeFactory make_ostromoukhov_factory;
+MakeFactory make_mis_power_factory;
+MakeFactory make_bis_reject_factory;
+MakeFactory make_bis_sir_factory;
+MakeFactory make_ris_factory;
+MakeFactory make_two_stage_factory;
 
 } // namespace haarlight::renderer
