@@ -68,6 +68,8 @@ void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
 
 const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
                                           const AdaptiveOptions& options) {
+  if (m_reflectance.pyramid != reflectance.pyramid)
+    m_drift_rate = -1;
   turn_to(reflectance, options);
   start();
   refine(options);
@@ -81,8 +83,12 @@ const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance
   if (m_reflectance.pyramid != reflectance.pyramid ||
       m_product.m_leaf_count > m_fresh_leaves + m_fresh_leaves / growth)
     return build(reflectance, options);
+  const float shift = squared_shift(reflectance.reflection);
+  if (serves(shift, options.drift_bound))
+    return m_product;
   turn_to(reflectance, options);
-  weigh_again();
+  const float drift = weigh_again();
+  m_drift_rate = shift > 0 ? drift / shift : m_drift_rate;
   refine(options);
   // With no leaves to spare, the old squares would stand in the way of those that matter now.
   if (excess_error(options) > 0 && m_product.m_leaf_count + 3 > m_limit)
@@ -96,8 +102,31 @@ double AdaptiveProduct::excess_error(const AdaptiveOptions& options) const {
   return m_error - static_cast<double>(options.variance_bound) * m_weight;
 }
 
+/// Whether the product at hand will do as it is, so far from where it was weighed.
+bool AdaptiveProduct::serves(float squared_shift, float drift_bound) const {
+  const bool is_near = squared_shift < detail::kept_shift * detail::kept_shift;
+  const bool is_alike = m_drift_rate >= 0 && m_drift_rate * squared_shift < drift_bound;
+  return squared_shift == 0 || (is_near && is_alike);
+}
+
+/// How far normal and mirror direction are from where the product was weighed: the sum of their
+/// squared chords.
+float AdaptiveProduct::squared_shift(const ReflectionFrame& reflection) const {
+  const ReflectionFrame& old = m_reflectance.reflection;
+  const auto normal = [](const ReflectionFrame& r) -> Vec3 {
+    return r.sin_theta_r * r.frame.t + r.cos_theta_r * r.frame.n;
+  };
+  return (reflection.frame.n - old.frame.n).squaredNorm() +
+         (normal(reflection) - normal(old)).squaredNorm();
+}
+
 /// Keeps the squares of the product at hand, with the weights that they have now.
-void AdaptiveProduct::weigh_again() {
+/// @return the relative variance that the old weights would have added: Σ new²/old − 1, both of
+/// sum 1
+float AdaptiveProduct::weigh_again() {
+  const double old_weight = m_weight;
+  const auto least = static_cast<float>(1e-6 * old_weight);
+  double squares = 0;
   std::array<float, 4 * detail::family_batch> density;
   const std::span<ProductLeaf> all = m_product.m_leaves;
   m_error = 0;
@@ -109,11 +138,15 @@ void AdaptiveProduct::weigh_again() {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       // Places not in use have a slot of old, but no light, and what stands there is summed anew.
       const auto slot = static_cast<std::uint32_t>(batch[i].slot);
-      m_product.m_nodes[slot / 4].weights[slot & 3U] = density[i];
-      m_weight += static_cast<double>(density[i] * power_of_two(-2 * batch[i].level));
+      float& weight = m_product.m_nodes[slot / 4].weights[slot & 3U];
+      const float area = power_of_two(-2 * batch[i].level);
+      squares += static_cast<double>(area * density[i] * density[i] / (weight + least));
+      weight = density[i];
+      m_weight += static_cast<double>(density[i] * area);
       m_error += static_cast<double>(m_errors[begin + i]);
     }
   }
+  return static_cast<float>(squares * old_weight / (m_weight * m_weight + 1e-30) - 1);
 }
 
 /// A node whose weights are yet to come.

@@ -9,6 +9,10 @@
 
 namespace haarlight::wavelet::detail {
 
+/// Products are kept for points whose normal and mirror direction are up to this far away, in
+/// radians, and reach that much below the horizon.
+inline constexpr float kept_shift = 0.05F;
+
 /// The four quadrants q = qx + 2 qy of a family.
 struct Quadrants {
   unsigned visible = 0;                  ///< bit q: some of the quadrant lies above the horizon

@@ -254,6 +254,8 @@ private:
 SamplerOptions sampling_of(const RenderOptions& options) {
   SamplerOptions result = options.sampling;
   result.count = static_cast<std::size_t>(options.spp);
+  if (needs_unshadowed(options.estimator)) // whose product has to be each point's own
+    result.product.drift_bound = 0;
   return result;
 }
 
@@ -281,7 +283,7 @@ std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator) 
 RenderFactories::RenderFactories(const LoadedScene& scene, const RenderOptions& options)
     : sampler(make_sampler_factory(options.sampler, scene, sampling_of(options))) {
   if (needs_unshadowed(options.estimator) && !traits(options.sampler).follows_product)
-    integrator = make_sampler_factory(SamplerKind::Product, scene, options.sampling);
+    integrator = make_sampler_factory(SamplerKind::Product, scene, sampling_of(options));
 }
 
 RenderResult render(const LoadedScene& scene, const RenderFactories& factories,

@@ -218,7 +218,7 @@ TEST_CASE("products that follow others sample and integrate as those built afres
     const Vec3 n(std::cos(turn), 0.6F * std::sin(turn), 0.8F * std::sin(turn));
     const Vec3 wo = (n + 0.9F * frame_about(n).t).normalized();
     const auto reflectance = reflectance_at(pyramid, n, wo, 0.5F);
-    const ProductTree& product = following.follow(reflectance, {});
+    const ProductTree& product = following.follow(reflectance, {.drift_bound = 0});
     const ProductTree& built = fresh.build(reflectance, {});
     kept += product.leaf_count() != built.leaf_count() ? 1 : 0;
     CHECK(product.leaf_count() < 2 * built.leaf_count());
@@ -235,6 +235,44 @@ TEST_CASE("products that follow others sample and integrate as those built afres
     CHECK(result.statistic < result.limit);
   }
   CHECK(kept > 10);
+}
+
+TEST_CASE("products that are kept for points nearby reach all that these need, at little loss") {
+  const Tree light = tree_of(random_map(128, 9), 0.1);
+  const Tree lobe = tree_of(lobe_map(128, 0), 0.01);
+  const TreeView views[2] = {lobe.view(), lobe.view()};
+  const Pyramid pyramid(views);
+  AdaptiveProduct following(light.view());
+  AdaptiveProduct fresh(light.view());
+  int kept = 0;
+  float last = 0;
+  for (int step = 0; step < 60; ++step) {
+    const float turn = 0.01F * static_cast<float>(step);
+    const Vec3 n(std::cos(turn), 0.6F * std::sin(turn), 0.8F * std::sin(turn));
+    const Vec3 wo = (n + 1.5F * frame_about(n).t).normalized();
+    const auto reflectance = reflectance_at(pyramid, n, wo, 0.5F);
+    const ProductTree& product = following.follow(reflectance, {});
+    const float integral = luminance(product.integral());
+    kept += integral == last ? 1 : 0;
+    last = integral;
+    const ProductTree& own = fresh.build(reflectance, {});
+    double square = 0;
+    double mass = 0;
+    for (int i = 0; i < 128 * 128; ++i) {
+      const Vec2 p((static_cast<float>(i % 128) + 0.5F) / 128,
+                   (static_cast<float>(i / 128) + 0.5F) / 128);
+      if (n.dot(square_to_sphere(p)) <= 0)
+        continue;
+      const auto target = static_cast<double>(own.pdf(p.x(), p.y()));
+      const auto density = static_cast<double>(product.pdf(p.x(), p.y()));
+      REQUIRE(density > 0);
+      square += target * target / density;
+      mass += target;
+    }
+    CHECK(square * 128 * 128 / (mass * mass) < 1.05);
+  }
+  CHECK(kept > 10);
+  CHECK(kept < 59);
 }
 
 TEST_CASE("products that may not grow follow to far points all the same") {

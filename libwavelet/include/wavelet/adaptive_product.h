@@ -23,6 +23,8 @@ struct AdaptiveOptions {
   /// Refine until the relative variance that is left, by estimate, is below this.
   float variance_bound = 0.03F;
   int max_leaves = 4096;
+  /// Relative variance, by estimate, that follow() may add by keeping a product as it is.
+  float drift_bound = 0.004F;
 };
 
 namespace detail {
@@ -54,9 +56,11 @@ public:
   /// The product at one shading point; valid until the next call.
   const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
 
-  /// The same at a point close to that of the last product, whose squares are kept and weighed
-  /// anew before refining goes on: to the same bound, in less time and with somewhat more leaves.
-  /// Builds afresh if that had another pyramid, or has grown by following others.
+  /// The same at a point close to that of the last product. That is kept as it is while what has
+  /// changed since it was weighed is little, by how fast it changed before: its density is above 0
+  /// wherever this point's integrand is, but its integral is another point's. Else its squares are
+  /// weighed anew and refining goes on: to the same bound, in less time than build() and with
+  /// somewhat more leaves. Builds afresh if that had another pyramid, or has grown by following.
   const ProductTree& follow(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
 
 private:
@@ -64,7 +68,9 @@ private:
 
   void turn_to(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
   void start();
-  void weigh_again();
+  float weigh_again();
+  bool serves(float squared_shift, float drift_bound) const;
+  float squared_shift(const ReflectionFrame& reflection) const;
   void refine(const AdaptiveOptions& options);
   double excess_error(const AdaptiveOptions& options) const;
   void split_above(float threshold);
@@ -84,8 +90,9 @@ private:
   std::vector<float> m_errors;       ///< what each leaf leaves of the variance, by estimate
   std::vector<std::uint32_t> m_free; ///< leaves no longer in use
   std::vector<std::int32_t> m_parent_slots;
-  ProductLeaf m_split; ///< on its way from quadrant to family
+  ProductLeaf m_split;            ///< on its way from quadrant to family
   std::size_t m_fresh_leaves = 0; ///< of the last product that followed none
+  float m_drift_rate = 0;         ///< variance added per squared radian; below 0 if unknown
   double m_weight = 0;
   double m_error = 0;
   ProductTree m_product;
