@@ -45,6 +45,8 @@ void declare_sampling(tool::Tool& app, RenderOptions& render) {
             "Relative variance per sample at which products stop refining", 1e-5, 100);
   app.value(render.sampling.product.max_leaves, "--product-leaves", "Leaves of a product at most",
             64, 1 << 20);
+  app.value(render.sampling.pps_samples, "--pps-samples",
+            "BRDF values that the sampler pps begins with at each point", 1, 4096);
 }
 
 void declare(tool::Tool& app, Options& options) {

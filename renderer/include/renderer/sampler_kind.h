@@ -8,7 +8,7 @@
 
 namespace haarlight::renderer {
 
-enum class SamplerKind : std::uint8_t { Product, ProductTable, Light, Brdf, Mis };
+enum class SamplerKind : std::uint8_t { Product, ProductTable, Light, Brdf, Mis, Wais, Pps };
 
 /// What a sampler wants made when a scene is loaded; bits.
 enum SamplerNeed : unsigned {

@@ -34,5 +34,7 @@ MakeFactory make_brdf_factory;
 MakeFactory make_mis_factory;
 MakeFactory make_product_factory;
 MakeFactory make_product_table_factory;
+MakeFactory make_wais_factory;
+MakeFactory make_pps_factory;
 
 } // namespace haarlight::renderer

@@ -39,6 +39,19 @@ constexpr std::array entries = {
                      .summary = "half light, half brdf, balance heuristic (Veach and Guibas 1995)",
                      .needs = NeedsLightDistribution | NeedsMaterialTrees},
           .make = make_mis_factory},
+    Entry{.traits = {.kind = SamplerKind::Wais,
+                     .name = "wais",
+                     .summary = "hash-table product of the nearest entries of two tables "
+                                "(Clarberg et al. 2005)",
+                     .needs = NeedsTables,
+                     .claim = SamplerClaim::Biased},
+          .make = make_wais_factory},
+    Entry{.traits = {.kind = SamplerKind::Pps,
+                     .name = "pps",
+                     .summary = "the light tree times a quadtree of BRDF values made on the fly "
+                                "(after Clarberg and Akenine-Möller 2008)",
+                     .needs = NeedsLightTree | NeedsMaterialTrees},
+          .make = make_pps_factory},
 };
 
 constexpr auto all_traits = [] {
