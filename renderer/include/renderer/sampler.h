@@ -66,7 +66,7 @@ public:
 
 struct SamplerOptions {
   wavelet::AdaptiveOptions product;
-  int pps_samples = 64; ///< BRDF values that `pps` begins with, ≥ 1
+  int pps_samples = 128; ///< BRDF values that `pps` begins with, ≥ 1
 };
 
 /// What the samplers of all threads share, made once for a scene; makes each thread's own.

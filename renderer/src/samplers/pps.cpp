@@ -186,8 +186,7 @@ private:
     m_regions.push_back(region);
   }
 
-  /// The reflectance over leaves: the mean of the splats there, or the value in the middle where
-  /// there are none.
+  /// The reflectance over leaves: the mean of the value in the middle and of the splats there.
   void value_leaves(const ShadingPoint& point, const Material& material) {
     m_directions.clear();
     for (const Region& region : m_regions)
@@ -200,12 +199,10 @@ private:
   }
 
   Float4 mean_of(const Region& region, Float4 center) const {
-    if (region.begin == region.end)
-      return center;
-    Float4 sum = {};
+    Float4 sum = center;
     for (std::uint32_t i = region.begin; i < region.end; ++i)
       sum += m_splats[i].value;
-    return sum / static_cast<float>(region.end - region.begin);
+    return sum / static_cast<float>(1 + region.end - region.begin);
   }
 
   /// Weights of leaves, then of what lies above them.
