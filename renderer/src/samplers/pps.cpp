@@ -54,11 +54,37 @@ struct Region {
   Float4 light = {}; ///< average radiance
   std::uint32_t node = wavelet::no_node;
 
-  Vec2 center() const {
-    return {(static_cast<float>(x) + 0.5F) * side(), (static_cast<float>(y) + 0.5F) * side()};
+  /// @param u,v in [0, 1]: where in the square
+  Vec3 direction(float u, float v) const {
+    return wavelet::square_to_sphere(
+        Vec2((static_cast<float>(x) + u) * side(), (static_cast<float>(y) + v) * side()));
   }
+  Vec3 center() const { return direction(0.5F, 0.5F); }
   float side() const { return power_of_two(-level); }
 };
+
+/// The direction that a square's reflectance is looked up in, and what it counts.
+struct Look {
+  Vec3 direction;
+  float weight = 1;
+};
+
+/// The middle of a square; if the horizon cuts the square its highest corner, which counts half:
+/// the cosine falls from there to 0.
+Look look_at(const Region& region, const Vec3& n) {
+  Look look = {region.center()};
+  if (n.dot(look.direction) > square_radius * region.side())
+    return look;
+  float lowest = 1;
+  Look highest = {look.direction, 0.5F};
+  for (const auto& [u, v] : {std::pair(0.0F, 0.0F), {0.0F, 1.0F}, {1.0F, 0.0F}, {1.0F, 1.0F}}) {
+    const Vec3 corner = region.direction(u, v);
+    lowest = std::min(lowest, n.dot(corner));
+    if (n.dot(corner) > n.dot(highest.direction))
+      highest.direction = corner;
+  }
+  return lowest < 0 ? highest : look;
+}
 
 class PracticalSampler : public Sampler {
 public:
@@ -186,20 +212,24 @@ private:
     m_regions.push_back(region);
   }
 
-  /// The reflectance over leaves: the mean of the value in the middle and of the splats there.
+  /// The reflectance over leaves: the mean of the splats there and of one look at it.
   void value_leaves(const ShadingPoint& point, const Material& material) {
     m_directions.clear();
-    for (const Region& region : m_regions)
-      m_directions.push_back(wavelet::square_to_sphere(region.center()));
+    m_look_weights.clear();
+    for (const Region& region : m_regions) {
+      const Look look = look_at(region, point.n);
+      m_directions.push_back(look.direction);
+      m_look_weights.push_back(look.weight);
+    }
     m_values.resize(m_directions.size());
     material.evaluate(point, m_directions, m_values);
     m_reflectance.resize(m_regions.size());
     for (std::size_t i = 0; i < m_regions.size(); ++i)
-      m_reflectance[i] = mean_of(m_regions[i], wavelet::to_lanes(m_values[i]));
+      m_reflectance[i] = mean_of(m_regions[i], wavelet::to_lanes(m_values[i]) * m_look_weights[i]);
   }
 
-  Float4 mean_of(const Region& region, Float4 center) const {
-    Float4 sum = center;
+  Float4 mean_of(const Region& region, Float4 looked_up) const {
+    Float4 sum = looked_up;
     for (std::uint32_t i = region.begin; i < region.end; ++i)
       sum += m_splats[i].value;
     return sum / static_cast<float>(1 + region.end - region.begin);
@@ -222,7 +252,7 @@ private:
     const Region& region = m_regions[i];
     const Float4 colours = larger(m_reflectance[i], floor) * wavelet::luminance_lanes;
     const float mean = wavelet::lane_sum(region.light * colours);
-    const float height = point.n.dot(wavelet::square_to_sphere(region.center()));
+    const float height = point.n.dot(region.center());
     const bool visible = height > -square_radius * region.side();
     set_weight(region.slot, visible ? std::max(mean, 0.0F) : 0.0F);
     m_leaves[i] = {&m_light, region.node, mean, colours};
@@ -241,6 +271,7 @@ private:
   std::vector<Rgb> m_values;
   std::vector<Region> m_pending;
   std::vector<Region> m_regions; ///< by leaf
+  std::vector<float> m_look_weights;
   std::vector<Float4> m_reflectance;
   std::vector<wavelet::ProductNode> m_nodes; ///< parents before children
   std::vector<std::int32_t> m_parent_slots;
