@@ -1,22 +1,26 @@
 #!/usr/bin/env bash
 # From wavelet importance sampling as published to the world-frame product, one change at a time, as
-# a Markdown table: relative variance per sample (random points, 64 a pixel), error of pictures of 64
-# random and 64 Sobol points, error that is left at 1024 Sobol points (a biased sampler's bias), and
-# the bytes that light and BRDF take mapped. Unoccluded sphere; errors are those of
-# `haarsheet --reference`, to a picture of 4096 Sobol points by `product` with a tight bound.
+# Markdown tables: relative variance per sample (random points, 64 a pixel), errors of pictures of 64
+# random, 64 Sobol and 1024 Sobol points, bytes that light and BRDF take mapped, and time per sample
+# over that of mis (set-up included, 64 samples). Unoccluded sphere; errors are those of `haarsheet
+# --reference`, to a picture of 4096 Sobol points by `product` with a tight bound.
 #
-#   tests/bench/ablation_wais.sh BIN BRDF_FOLDER PROBE_FOLDER WORK
+#   tests/bench/ablation_wais.sh BIN BRDF_FOLDER PROBE_FOLDER WORK [steps] [bias]
 #
+# steps: that table; bias: what error is left on 8 × 8 pixels, after 4096 and 65536 Sobol points, of which
+# a biased sampler gets rid no more. Both without either word.
 # MATERIALS and PROBES name files without .binary and .hdr; FILM is the picture's size. WORK keeps
 # the tables, about 1 GB by default; the first run takes about half an hour, later ones half of it.
 set -euo pipefail
-if [ $# -ne 4 ]; then
-  echo "usage: ablation_wais.sh BIN BRDF_FOLDER PROBE_FOLDER WORK" >&2
+if [ $# -lt 4 ]; then
+  echo "usage: ablation_wais.sh BIN BRDF_FOLDER PROBE_FOLDER WORK [steps] [bias]" >&2
   exit 2
 fi
 bin=$(realpath "$1") data_brdf=$(realpath "$2") data_probe=$(realpath "$3")
 mkdir -p "$4"
 work=$(realpath "$4")
+what=${*:5}
+what=${what:-steps bias}
 materials=${MATERIALS:-violet-acrylic gold-paint chrome}
 probes=${PROBES:-grace_probe rnl_probe}
 FILM=${FILM:-32x32}
@@ -57,17 +61,30 @@ row() {
     "$(compute "$brdf_bytes / 1e6" %g)" "$(compute "$time / $mis_time" %g)"
 }
 
-# table_row NAME SAMPLER SIZE ORIENTATIONS THETA ROLL LIGHT_COMPRESSION BRDF_COMPRESSION
-table_row() {
-  local light brdf
+# bias_row NAME OPTIONS…: a line of what is left, of the scene at hand.
+bias_row() {
+  local few
+  render --points sobol --spp 4096 "${@:2}"
+  few=$(picture_error "$reference")
+  render --points sobol --spp 65536 "${@:2}"
+  printf '| %s | %.2g | %.2g |\n' "$1" "$few" "$(picture_error "$reference")"
+}
+
+# table_scene SIZE ORIENTATIONS THETA ROLL LIGHT_COMPRESSION BRDF_COMPRESSION
+table_scene() {
+  local light
   # shellcheck disable=SC2086
-  light_table "$probe" "$3" "$4" $7
+  light_table "$probe" "$1" "$2" $5
   light=$made
   # shellcheck disable=SC2086
-  brdf_table "$material" "$3" "$5" "$6" $8
-  brdf=$made
-  scene "$material" "$probe" "$world" "$lobes" "$light" "$brdf"
-  light_bytes=$(bytes_of "$light") brdf_bytes=$(bytes_of "$brdf")
+  brdf_table "$material" "$1" "$3" "$4" $6
+  scene "$material" "$probe" "$world" "$lobes" "$light" "$made"
+  light_bytes=$(bytes_of "$light") brdf_bytes=$(bytes_of "$made")
+}
+
+# table_row NAME SAMPLER SIZE ORIENTATIONS THETA ROLL LIGHT_COMPRESSION BRDF_COMPRESSION
+table_row() {
+  table_scene "${@:3}"
   row "$1" --sampler "$2"
 }
 
@@ -81,17 +98,23 @@ product_row() {
   row "$name" --sampler product "${@:4}"
 }
 
-# Shares of 4096 and 16384 coefficients: a tenth of the light's, a twentieth of the BRDF's.
-ablation() {
+# begin REFERENCE_OPTIONS…: makes the world's trees, the reference picture and its scene.
+begin() {
   world="$work/$probe-world-1024.haar" lobes="$work/$material-theta-512.haar"
   reference="$work/reference-$material-$probe-$film.exr"
   make_once "$world" "$bin/probe2maps" "$(probe_file "$probe")" --size 1024
   make_once "$lobes" "$bin/brdf2maps" "$(brdf_file "$material")" --size 512
   scene "$material" "$probe" "$world" "$lobes"
-  if [ ! -s "$reference" ]; then
-    render --points sobol --spp 4096 --seed 99 --product-variance 0.003 --product-leaves 65536
-    mv "$work/out.exr" "$reference"
-  fi
+  [ -s "$reference" ] && return
+  render --points sobol --seed 99 "$@"
+  mv "$work/out.exr" "$reference"
+}
+
+# Shares of 4096 and 16384 coefficients: a tenth of the light's, a twentieth of the BRDF's.
+k64="--keep 410" b64="--keep 205" k128="--keep 1638" b128="--keep 819"
+
+steps() {
+  begin --spp 4096 --product-variance 0.003 --product-leaves 65536
   printf '\n%s under %s:\n\n| | variance | 64 random | 64 Sobol | 1024 Sobol | light / BRDF, MB | time |\n' \
     "$material" "$probe"
   printf '|---|---|---|---|---|---|---|\n'
@@ -99,7 +122,6 @@ ablation() {
   relvar --sampler mis >/dev/null
   mis_time=$(field thread_ns_per_sample "$work/out.json")
   row mis --sampler mis
-  local k64="--keep 410" b64="--keep 205" k128="--keep 1638" b128="--keep 819"
   table_row "wais: 64², 16² orientations, 16 × 32 rolls, 10 %/5 % by L2" wais 64 16 16 32 \
     "--criterion l2 $k64" "--criterion l2 $b64"
   table_row "… by variance" wais 64 16 16 32 "$k64" "$b64"
@@ -120,8 +142,24 @@ ablation() {
   row "pps" --sampler pps
 }
 
-for probe in $probes; do
-  for material in $materials; do
-    ablation
+bias() {
+  local film=8x8
+  begin --spp 65536
+  printf '\n%s under %s:\n\n| | 4096 | 65536 |\n|---|---|---|\n' "$material" "$probe"
+  bias_row mis --sampler mis
+  table_scene 64 16 16 32 "--criterion l2 $k64" "--criterion l2 $b64"
+  bias_row "wais: 64², 16² orientations, by L2" --sampler wais
+  bias_row "the same tables, product-table" --sampler product-table
+  table_scene 64 32 32 64 "--criterion l2 $k64" "--criterion l2 $b64"
+  bias_row "wais: 64², 32² orientations, by L2" --sampler wais
+  table_scene 64 32 32 64 "$k64" "$b64"
+  bias_row "wais: 64², 32² orientations, by variance" --sampler wais
+}
+
+for part in $what; do
+  for probe in $probes; do
+    for material in $materials; do
+      "$part"
+    done
   done
 done
