@@ -47,11 +47,17 @@ void declare_sampling(tool::Tool& app, RenderOptions& render) {
             1e-5, 100);
   app.value(render.sampling.product.max_leaves, "--product-leaves", "Leaves of a product at most",
             64, 1 << 20);
+  app.value(render.sampling.product.drift_bound, "--product-drift",
+            "Relative variance per sample that a pixel may add by using its neighbour's product; "
+            "0 = each its own",
+            0, 100);
   app.value(render.sampling.candidates, "--candidates",
             "Candidates for each sample, of samplers that resample: bis-reject, bis-sir, ris", 1,
             4096);
   app.value(render.sampling.regions, "--regions", "Regions that two-stage divides the probe into",
             4, 1 << 20);
+  app.value(render.sampling.pps_samples, "--pps-samples",
+            "BRDF values that the sampler pps begins with at each point", 1, 4096);
 }
 
 void declare(tool::Tool& app, Options& options) {

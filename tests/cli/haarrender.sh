@@ -28,9 +28,10 @@ cat >sphere.json <<'END'
   "materials": {"measured": {"brdf": "brdf.binary", "haar": "brdf.haar", "table": "brdf.table.haar"}},
   "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "measured"}] }
 END
-for sampler in product product-table light brdf mis factored alias median-cut kollig-keller structured ostromoukhov; do
+for sampler in product product-table light brdf mis factored alias median-cut kollig-keller structured \
+  ostromoukhov mis-power bis-reject bis-sir ris two-stage wais pps; do
   scene=scene.json
-  [ $sampler = product-table ] && scene=sphere.json
+  case $sampler in product-table | wais) scene=sphere.json ;; esac
   expect 0 haarrender $scene -o $sampler.exr --sampler $sampler --spp 4
   check "$sampler.exr is a picture" "$bin/haarsheet" $sampler.exr -o sheet.png
   rm $sampler.exr sheet.png

@@ -71,8 +71,9 @@ struct SamplerOptions {
   wavelet::AdaptiveOptions product;
   std::size_t count = 0; ///< samples that a pass is likely to ask for; what depends on the count is
                          ///< then made beforehand
-  int candidates = 16; ///< of resampling samplers for each sample, at most; above 0
-  int regions = 512;   ///< that two-stage divides the light into, at most; 4 or more
+  int candidates = 16;   ///< of resampling samplers for each sample, at most; above 0
+  int regions = 512;     ///< that two-stage divides the light into, at most; 4 or more
+  int pps_samples = 128; ///< BRDF values that `pps` begins with, ≥ 1
 };
 
 /// What the samplers of all threads share, made once for a scene; makes each thread's own.

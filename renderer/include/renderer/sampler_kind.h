@@ -26,6 +26,7 @@ enum class SamplerKind : std::uint8_t {
   Ris,
   TwoStage
 };
+enum class SamplerKind : std::uint8_t { Product, ProductTable, Light, Brdf, Mis, Wais, Pps };
 
 /// What a sampler wants made when a scene is loaded; bits.
 enum SamplerNeed : unsigned {

@@ -45,5 +45,7 @@ MakeFactory make_bis_reject_factory;
 MakeFactory make_bis_sir_factory;
 MakeFactory make_ris_factory;
 MakeFactory make_two_stage_factory;
+MakeFactory make_wais_factory;
+MakeFactory make_pps_factory;
 
 } // namespace haarlight::renderer

@@ -100,6 +100,19 @@ constexpr std::array entries = {
                          "the probe divided by the BRDF, summed-area table (Cline et al. 2006)",
                      .needs = NeedsMaterialTrees},
           .make = make_two_stage_factory},
+    Entry{.traits = {.kind = SamplerKind::Wais,
+                     .name = "wais",
+                     .summary = "hash-table product of the nearest entries of two tables "
+                                "(Clarberg et al. 2005)",
+                     .needs = NeedsTables,
+                     .claim = SamplerClaim::Biased},
+          .make = make_wais_factory},
+    Entry{.traits = {.kind = SamplerKind::Pps,
+                     .name = "pps",
+                     .summary = "the light tree times a quadtree of BRDF values made on the fly "
+                                "(after Clarberg and Akenine-Möller 2008)",
+                     .needs = NeedsLightTree | NeedsMaterialTrees},
+          .make = make_pps_factory},
 };
 
 constexpr auto all_traits = [] {

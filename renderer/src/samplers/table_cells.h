@@ -1,0 +1,36 @@
+#pragma once
+// The nearest entries of the paper's two tables at a shading point.
+
+#include <renderer/light.h>
+#include <renderer/material.h>
+
+#include <wavelet/symmetry.h>
+
+namespace haarlight::renderer {
+
+/// A light's cell of ω_r, and a reflectance's of θ_r and roll in that cell's frame. Points with the
+/// same cells have the same product.
+struct TableCells {
+  int light_column = 0;
+  int light_row = 0;
+  int theta = 0; ///< column of the reflectance's table
+  int roll = 0;  ///< over the full circle, stored or not
+
+  bool operator==(const TableCells&) const = default;
+};
+
+/// @param table of the light's maps; the material must have a table of rolls
+TableCells nearest_cells(const TreeTable& table, const ShadingPoint& point,
+                         const Material& material);
+
+/// The frame of a light's entry.
+Frame entry_frame(const TreeTable& table, const TableCells& cells);
+
+/// The stored tree of a reflectance's entry, and how it is seen.
+struct RollEntry {
+  const wavelet::TreeView& tree;
+  wavelet::SquareSymmetry symmetry;
+};
+RollEntry roll_entry(const TreeTable& rolls, const TableCells& cells);
+
+} // namespace haarlight::renderer
