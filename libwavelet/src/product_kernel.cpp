@@ -65,9 +65,12 @@ void look_up(const RotatedReflectance& reflectance, const Lanes& lanes, std::siz
   for (unsigned q = 0; q < 4; ++q) {
     const std::size_t i = first + q;
     quadrants.reflectance[q] = Float4{};
-    if (!(lanes.height[i] > -square_radius * lanes.side[i] - kept_shift))
+    const float nearest = lanes.height[i] + square_radius * lanes.side[i];
+    if (!(nearest > -kept_shift))
       continue;
     quadrants.visible |= 1U << q;
+    if (!(nearest > 0)) // in reach of points nearby, but dark here
+      continue;
     quadrants.reflectance[q] = reflectance.pyramid->lookup(reflectance.entry0, reflectance.entry1,
                                                            reflectance.blend, lanes.places, i);
   }

@@ -247,7 +247,7 @@ TEST_CASE("products that are kept for points nearby reach all that these need, a
   int kept = 0;
   float last = 0;
   for (int step = 0; step < 60; ++step) {
-    const float turn = 0.01F * static_cast<float>(step);
+    const float turn = 0.003F * static_cast<float>(step);
     const Vec3 n(std::cos(turn), 0.6F * std::sin(turn), 0.8F * std::sin(turn));
     const Vec3 wo = (n + 1.5F * frame_about(n).t).normalized();
     const auto reflectance = reflectance_at(pyramid, n, wo, 0.5F);

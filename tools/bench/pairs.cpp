@@ -57,15 +57,13 @@ PairScene pair_scene(SceneDescription scene, const Entry& brdf, const Entry& pro
   light.haar = probe.trees.path;
   light.table.clear();
   light.mapping = "auto";
-  MaterialDescription& material = scene.materials.front();
-  material = {.name = material.name,
-              .brdf = brdf.subject.path,
-              .haar = brdf.trees.path,
-              .table = {},
-              .lambert = {}};
+  MaterialDescription material;
+  material.name = scene.materials.front().name;
+  material.brdf = brdf.subject.path;
+  material.haar = brdf.trees.path;
   if (needs(sampler, NeedsLightTree))
     result.precompute_seconds += probe.trees.seconds;
-  if (needs(sampler, NeedsMaterialTrees))
+  if (needs(sampler, NeedsMaterialTrees) || needs(sampler, NeedsLobes))
     result.precompute_seconds += brdf.trees.seconds;
   if (needs(sampler, NeedsTables)) {
     const std::string suffix = table_recipe(traits(sampler)).suffix;
@@ -73,6 +71,7 @@ PairScene pair_scene(SceneDescription scene, const Entry& brdf, const Entry& pro
     material.table = brdf.tables.at(suffix).path;
     result.precompute_seconds += probe.tables.at(suffix).seconds + brdf.tables.at(suffix).seconds;
   }
+  scene.materials.front() = material;
   result.description = std::move(scene);
   return result;
 }

@@ -111,6 +111,9 @@ double log_slope(std::span<const double> x, std::span<const double> y) {
   return along > 0 ? across / along : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Samples are taken to need at least this share of the time of the longest run.
+constexpr double least_share_of_samples = 0.05;
+
 void CostModel::add(int spp, double seconds) {
   const Point point{static_cast<double>(spp), seconds};
   const auto place = std::lower_bound(m_points.begin(), m_points.end(), point.spp,
@@ -123,7 +126,9 @@ double CostModel::seconds_per_spp() const {
   assert(m_points.size() >= 2);
   const Point& first = m_points.front();
   const Point& last = m_points.back();
-  return std::max(0.0, (last.seconds - first.seconds) / (last.spp - first.spp));
+  // Beside a long set-up, the clock's noise may hide what samples cost, or turn it round.
+  return std::max(least_share_of_samples * last.seconds / last.spp,
+                  (last.seconds - first.seconds) / (last.spp - first.spp));
 }
 
 int CostModel::affordable(double seconds, int most) const {
@@ -135,7 +140,7 @@ int CostModel::affordable(double seconds, int most) const {
   const Point& high = m_points[i];
   const double slope =
       std::max((high.seconds - low.seconds) / (high.spp - low.spp), seconds_per_spp() / 4);
-  if (!(slope > 0))
+  if (!(slope > 0)) // nothing took any time
     return most;
   const double spp = low.spp + (seconds - low.seconds) / slope;
   return static_cast<int>(std::clamp(std::floor(spp + 1e-9), 1.0, static_cast<double>(most)));

@@ -48,7 +48,8 @@ class CostModel {
 public:
   void add(int spp, double seconds);
 
-  /// Of one more sample per pixel, from the first to the last point, at least 0.
+  /// Of one more sample per pixel, from the first to the last point; at least a twentieth of the
+  /// last point's mean.
   double seconds_per_spp() const;
 
   /// The most samples per pixel that fit a budget, from 1 to `most`. After two points or more.

@@ -24,9 +24,10 @@ enum class SamplerKind : std::uint8_t {
   BisReject,
   BisSir,
   Ris,
-  TwoStage
+  TwoStage,
+  Wais,
+  Pps
 };
-enum class SamplerKind : std::uint8_t { Product, ProductTable, Light, Brdf, Mis, Wais, Pps };
 
 /// What a sampler wants made when a scene is loaded; bits.
 enum SamplerNeed : unsigned {
