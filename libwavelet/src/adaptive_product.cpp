@@ -67,32 +67,44 @@ void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
 }
 
 const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
-                                          const AdaptiveOptions& options) {
+                                          const AdaptiveOptions& options,
+                                          const Occlusion* occlusion) {
   if (m_reflectance.pyramid != reflectance.pyramid)
     m_drift_rate = -1;
   turn_to(reflectance, options);
   start();
   refine(options);
   m_fresh_leaves = m_product.m_leaf_count;
-  m_product.sum_upwards(m_parent_slots);
-  return m_product;
+  return finish(options, occlusion);
 }
 
 const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance,
-                                           const AdaptiveOptions& options) {
+                                           const AdaptiveOptions& options,
+                                           const Occlusion* occlusion) {
   if (m_reflectance.pyramid != reflectance.pyramid ||
       m_product.m_leaf_count > m_fresh_leaves + m_fresh_leaves / growth)
-    return build(reflectance, options);
+    return build(reflectance, options, occlusion);
   const float shift = squared_shift(reflectance.reflection);
-  if (serves(shift, options.drift_bound))
-    return m_product;
+  if (serves(shift, options.drift_bound)) {
+    if (occlusion == nullptr && !m_masked)
+      return m_product;
+    unmask();
+    return finish(options, occlusion);
+  }
   turn_to(reflectance, options);
   const float drift = weigh_again();
   m_drift_rate = shift > 0 ? drift / shift : m_drift_rate;
   refine(options);
   // With no leaves to spare, the old squares would stand in the way of those that matter now.
   if (excess_error(options) > 0 && m_product.m_leaf_count + 3 > m_limit)
-    return build(reflectance, options);
+    return build(reflectance, options, occlusion);
+  return finish(options, occlusion);
+}
+
+const ProductTree& AdaptiveProduct::finish(const AdaptiveOptions& options,
+                                           const Occlusion* occlusion) {
+  if (occlusion != nullptr)
+    mask(options, *occlusion);
   m_product.sum_upwards(m_parent_slots);
   return m_product;
 }
@@ -124,13 +136,14 @@ float AdaptiveProduct::squared_shift(const ReflectionFrame& reflection) const {
 /// @return the relative variance that the old weights would have added: Σ new²/old − 1, both of
 /// sum 1
 float AdaptiveProduct::weigh_again() {
-  const double old_weight = m_weight;
-  const auto least = static_cast<float>(1e-6 * old_weight);
+  const auto least = static_cast<float>(1e-6 * m_weight);
+  double old_weight = 0;
   double squares = 0;
   std::array<float, 4 * detail::family_batch> density;
   const std::span<ProductLeaf> all = m_product.m_leaves;
   m_error = 0;
   m_weight = 0;
+  m_masked = false;
   for (std::size_t begin = 0; begin < all.size(); begin += density.size()) {
     const auto batch = all.subspan(begin, std::min(density.size(), all.size() - begin));
     detail::weigh_leaves(m_reflectance, m_product.m_rests[0].floor, batch, density.data(),
@@ -138,10 +151,12 @@ float AdaptiveProduct::weigh_again() {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       // Places not in use have a slot of old, but no light, and what stands there is summed anew.
       const auto slot = static_cast<std::uint32_t>(batch[i].slot);
-      float& weight = m_product.m_nodes[slot / 4].weights[slot & 3U];
       const float area = power_of_two(-2 * batch[i].level);
-      squares += static_cast<double>(area * density[i] * density[i] / (weight + least));
-      weight = density[i];
+      const float old = m_shares[begin + i].density;
+      old_weight += static_cast<double>(old * area);
+      squares += static_cast<double>(area * density[i] * density[i] / (old + least));
+      m_shares[begin + i] = {density[i]};
+      m_product.m_nodes[slot / 4].weights[slot & 3U] = density[i];
       m_weight += static_cast<double>(density[i] * area);
       m_error += static_cast<double>(m_errors[begin + i]);
     }
@@ -165,6 +180,8 @@ void AdaptiveProduct::start() {
   m_product.m_leaves.clear();
   m_parent_slots.clear();
   m_errors.clear();
+  m_shares.clear();
+  m_masked = false;
   m_free.clear();
   m_weight = 0;
   m_error = 0;
@@ -222,6 +239,7 @@ void AdaptiveProduct::split_above(float threshold) {
     m_free.push_back(static_cast<std::uint32_t>(i));
     leaf.light = Float4{};
     m_errors[i] = 0;
+    m_shares[i] = {};
   }
   expand_all(threshold);
 }
@@ -267,6 +285,7 @@ void AdaptiveProduct::add(const Family& family, const detail::Quadrants& quadran
       continue;
     }
     m_errors[place] = quadrants.error[q];
+    m_shares[place] = {quadrants.density[q]};
     m_product.child(leaf.slot) = ~static_cast<std::int32_t>(place);
     m_error += static_cast<double>(quadrants.error[q]);
     density += static_cast<double>(quadrants.density[q]);
@@ -290,6 +309,7 @@ std::uint32_t AdaptiveProduct::new_leaf() {
   if (m_free.empty()) {
     m_product.m_leaves.emplace_back();
     m_errors.push_back(0);
+    m_shares.emplace_back();
     return static_cast<std::uint32_t>(m_errors.size() - 1);
   }
   const std::uint32_t place = m_free.back();

@@ -45,6 +45,24 @@ struct TileCost {
   std::uint64_t leaves = 0;
 };
 
+/// What stands in the way of a hit.
+class PointOcclusion : public wavelet::Occlusion {
+public:
+  PointOcclusion(const LoadedScene& scene, const Hit& hit) : m_scene(scene), m_hit(hit) {}
+
+  /// Below the surface nothing counts as hidden: what lies there is no light's way.
+  void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override {
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      const Vec3 w = m_scene.light().to_world(directions[i]);
+      hidden[i] = m_hit.normal.dot(w) > 0 && m_scene.shapes().occluded(leave(m_hit, w)) ? 1 : 0;
+    }
+  }
+
+private:
+  const LoadedScene& m_scene;
+  const Hit& m_hit;
+};
+
 /// Renders tiles of one pass; one for each thread at a time.
 class TileRenderer {
 public:
@@ -89,7 +107,10 @@ private:
              PixelSums& sums) {
     const Light& light = m_scene.light();
     const Material& material = m_scene.material_of(hit.object);
-    const ShadingPoint point = shading_point(light.to_light(hit.normal), light.to_light(wo));
+    ShadingPoint point = shading_point(light.to_light(hit.normal), light.to_light(wo));
+    const PointOcclusion occlusion(m_scene, hit);
+    if (m_options.estimator == Estimator::Unbiased && m_scene.shapes().may_occlude(hit.object))
+      point.occlusion = &occlusion;
     prepare(point, material, sums);
     m_directions.resize(pass.count);
     m_sampler->sample({m_options.points, hash_words(pixel_index, m_options.seed), pass.first},

@@ -135,6 +135,12 @@ int ShapeSet::add(const Shape& shape, const Transform& transform) {
   return object;
 }
 
+bool ShapeSet::may_occlude(int object) const {
+  return size() > 1 || std::any_of(m_solids.begin(), m_solids.end(), [&](const Solid& solid) {
+           return solid.object == object && solid.kind == SolidKind::Torus;
+         });
+}
+
 void ShapeSet::add_solid(Solid solid) {
   const std::size_t lane = m_solids.size() % 4;
   if (lane == 0)

@@ -275,6 +275,65 @@ TEST_CASE("products that are kept for points nearby reach all that these need, a
   CHECK(kept < 59);
 }
 
+namespace {
+
+/// Everything on one side of a plane.
+class HalfHidden : public Occlusion {
+public:
+  explicit HalfHidden(const Vec3& side) : m_side(side) {}
+  bool hides(const Vec3& w) const { return m_side.dot(w) > 0; }
+  void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override {
+    for (std::size_t i = 0; i < directions.size(); ++i)
+      hidden[i] = hides(directions[i]) ? 1 : 0;
+  }
+
+private:
+  Vec3 m_side;
+};
+
+/// Second moment of the target's visible part over the density, relative to its squared mean.
+double relative_square(const ProductTree& target, const ProductTree& density,
+                       const HalfHidden& occlusion) {
+  double square = 0;
+  double mean = 0;
+  for (int i = 0; i < 128 * 128; ++i) {
+    const Vec2 p((static_cast<float>(i % 128) + 0.5F) / 128,
+                 (static_cast<float>(i / 128) + 0.5F) / 128);
+    const auto f = static_cast<double>(target.pdf(p.x(), p.y()));
+    if (f <= 0 || occlusion.hides(square_to_sphere(p)))
+      continue;
+    mean += f / (128 * 128);
+    square += f * f / static_cast<double>(density.pdf(p.x(), p.y())) / (128 * 128);
+  }
+  return square / (mean * mean);
+}
+
+} // namespace
+
+TEST_CASE("products that know what is in the way spend few samples there, and miss nothing") {
+  const Tree light = tree_of(random_map(128, 9), 0.1);
+  const Tree lobe = tree_of(lobe_map(128, 0), 0.01);
+  const TreeView views[2] = {lobe.view(), lobe.view()};
+  const Pyramid pyramid(views);
+  AdaptiveProduct plain(light.view());
+  AdaptiveProduct knowing(light.view());
+  for (int step = 0; step < 6; ++step) {
+    const float turn = 0.02F * static_cast<float>(step);
+    const Vec3 n(std::sin(turn), 0, std::cos(turn));
+    const auto reflectance = reflectance_at(pyramid, n, n, 0);
+    const HalfHidden occlusion(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)));
+    const ProductTree& all = plain.build(reflectance, {});
+    const ProductTree& open = knowing.follow(reflectance, {}, &occlusion);
+    CHECK(luminance(open.integral()) == Approx(luminance(all.integral())).epsilon(0.02));
+    CHECK(relative_square(all, open, occlusion) < 10);
+    CHECK(relative_square(all, all, occlusion) > 1.3 * relative_square(all, open, occlusion));
+    const auto result = chi_square_of(open, 16);
+    CHECK(result.pdf_sum == Approx(1).margin(2e-3));
+    CHECK(result.statistic < result.limit);
+    CHECK(relative_square(all, knowing.follow(reflectance, {}), HalfHidden(Vec3::Zero())) < 1.1);
+  }
+}
+
 TEST_CASE("products that may not grow follow to far points all the same") {
   const Tree light = tree_of(random_map(256, 9), 0.1);
   const Tree lobe = tree_of(lobe_map(256, 0), 0.01);

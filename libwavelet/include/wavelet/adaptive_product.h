@@ -27,7 +27,24 @@ struct AdaptiveOptions {
   float drift_bound = 0.004F;
 };
 
+/// What stands between a point and the light.
+class Occlusion {
+public:
+  virtual ~Occlusion() = default;
+
+  /// Sets each of `out` to whether something is in the way of a direction in the light's frame; as
+  /// many as `directions`.
+  virtual void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const = 0;
+};
+
 namespace detail {
+
+/// What a leaf weighs.
+struct LeafShare {
+  float density = 0; ///< the product's average weight, whatever is in the way
+  float kept = 1;    ///< of it
+  bool tested = false;
+};
 
 /// A square about to be replaced by its four quadrants.
 struct Family {
@@ -54,14 +71,18 @@ public:
   explicit AdaptiveProduct(const TreeView& light);
 
   /// The product at one shading point; valid until the next call.
-  const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
+  /// @param occlusion if given, squares of weight whose centres are hidden from the point get
+  /// little of the density, never none; the product's integral stays that of light and reflectance
+  const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
+                           const Occlusion* occlusion = nullptr);
 
   /// The same at a point close to that of the last product. That is kept as it is while what has
   /// changed since it was weighed is little, by how fast it changed before: its density is above 0
   /// wherever this point's integrand is, but its integral is another point's. Else its squares are
   /// weighed anew and refining goes on: to the same bound, in less time than build() and with
   /// somewhat more leaves. Builds afresh if that had another pyramid, or has grown by following.
-  const ProductTree& follow(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
+  const ProductTree& follow(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
+                            const Occlusion* occlusion = nullptr);
 
 private:
   using Family = detail::Family;
@@ -72,6 +93,12 @@ private:
   bool serves(float squared_shift, float drift_bound) const;
   float squared_shift(const ReflectionFrame& reflection) const;
   void refine(const AdaptiveOptions& options);
+  const ProductTree& finish(const AdaptiveOptions& options, const Occlusion* occlusion);
+  void mask(const AdaptiveOptions& options, const Occlusion& occlusion);
+  bool hide(const Occlusion& occlusion);
+  void find_candidates();
+  void keep(std::uint32_t leaf, float share);
+  void unmask();
   double excess_error(const AdaptiveOptions& options) const;
   void split_above(float threshold);
   void expand_all(float threshold);
@@ -85,10 +112,15 @@ private:
   std::vector<Family> m_start; ///< the same for every product
   RotatedReflectance m_reflectance;
   std::size_t m_limit = 0;
-  std::vector<Family> m_families;    ///< being replaced
-  std::vector<Family> m_next;        ///< to be replaced after them
-  std::vector<float> m_errors;       ///< what each leaf leaves of the variance, by estimate
-  std::vector<std::uint32_t> m_free; ///< leaves no longer in use
+  std::vector<Family> m_families; ///< being replaced
+  std::vector<Family> m_next;     ///< to be replaced after them
+  std::vector<float> m_errors;    ///< what each leaf leaves of the variance, by estimate
+  std::vector<detail::LeafShare> m_shares;
+  std::vector<std::uint32_t> m_free;       ///< leaves no longer in use
+  bool m_masked = false;                   ///< some leaf's share is not all of it
+  std::vector<std::uint32_t> m_candidates; ///< leaves to be tested
+  std::vector<Vec3> m_directions;
+  std::vector<std::uint8_t> m_hidden;
   std::vector<std::int32_t> m_parent_slots;
   ProductLeaf m_split;            ///< on its way from quadrant to family
   std::size_t m_fresh_leaves = 0; ///< of the last product that followed none

@@ -101,6 +101,13 @@ private:
     return m_nodes[static_cast<std::uint32_t>(slot) / 4].child[slot & 3];
   }
 
+  /// The weight of a node's quadrant, by 4 × node + quadrant. Vectors have no references to lanes.
+  float& weight_at(std::int32_t slot) {
+    auto* weights =
+        reinterpret_cast<float*>(&m_nodes[static_cast<std::uint32_t>(slot) / 4].weights);
+    return weights[slot & 3];
+  }
+
   /// A leaf's share in the total.
   float weight(const ProductLeaf& leaf) const {
     return m_nodes[static_cast<std::uint32_t>(leaf.slot) / 4].weights[leaf.slot & 3] *

@@ -6,6 +6,7 @@
 
 #include <brdf/analytic.h>
 #include <brdf/measured_brdf.h>
+#include <wavelet/adaptive_product.h>
 
 #include <memory>
 #include <span>
@@ -14,9 +15,10 @@ namespace haarlight::renderer {
 
 /// A surface point as samplers see it; all directions in one frame.
 struct ShadingPoint {
-  Vec3 n;                     ///< unit normal, on the viewer's side
-  Vec3 wo;                    ///< unit direction to the viewer, n·wo > 0
-  ReflectionFrame reflection; ///< of n and wo
+  Vec3 n;                                        ///< unit normal, on the viewer's side
+  Vec3 wo;                                       ///< unit direction to the viewer, n·wo > 0
+  ReflectionFrame reflection;                    ///< of n and wo
+  const wavelet::Occlusion* occlusion = nullptr; ///< of the point, where anything may be in the way
 };
 
 ShadingPoint shading_point(const Vec3& n, const Vec3& wo);

@@ -72,6 +72,9 @@ public:
   /// sooner.
   bool occluded(const Ray& ray) const;
 
+  /// Whether light on an object may be in another's shadow or its own.
+  bool may_occlude(int object) const;
+
 private:
   void add_solid(detail::Solid solid);
 

@@ -17,8 +17,8 @@ public:
 
   void prepare(const ShadingPoint& point, const Material& material) override {
     const wavelet::RotatedReflectance reflectance = material.reflectance(point);
-    m_product = m_follows ? &m_builder.follow(reflectance, m_options)
-                          : &m_builder.build(reflectance, m_options);
+    m_product = m_follows ? &m_builder.follow(reflectance, m_options, point.occlusion)
+                          : &m_builder.build(reflectance, m_options, point.occlusion);
     m_follows = true;
   }
 
