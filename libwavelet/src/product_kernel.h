@@ -15,7 +15,7 @@ inline constexpr float kept_shift = 0.05F;
 
 /// The four quadrants q = qx + 2 qy of a family.
 struct Quadrants {
-  unsigned visible = 0;                  ///< bit q: some of it lies above the horizon, or little below
+  unsigned visible = 0; ///< bit q: some of it lies above the horizon, or little below
   std::array<std::uint32_t, 4> children; ///< nodes of the light tree, or no_node
   Float4 density = {};                   ///< the product's average weight; 0 below the horizon
   Float4 error = {}; ///< what each leaves of the product's variance if it stays a leaf

@@ -45,3 +45,42 @@ TEST_CASE("a sampler whose table the scene does not name says which") {
   CHECK_THROWS_WITH(LoadedScene(description, {}, SamplerKind::Product, false),
                     Catch::Contains("--roll 1"));
 }
+
+namespace {
+
+/// Half of the directions above a point.
+class HalfHidden : public wavelet::Occlusion {
+public:
+  explicit HalfHidden(const Vec3& side) : m_side(side) {}
+  void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override {
+    for (std::size_t i = 0; i < directions.size(); ++i)
+      hidden[i] = m_side.dot(directions[i]) > 0 ? 1 : 0;
+  }
+
+private:
+  Vec3 m_side;
+};
+
+} // namespace
+
+TEST_CASE("a product that thinks half of the light hidden is unbiased all the same") {
+  const SceneDescription description = fixture().scene("glossy", "studio");
+  const LoadedScene scene(description, {}, SamplerKind::Product, false);
+  const auto factory = make_sampler_factory(SamplerKind::Product, scene, {});
+  const auto sampler = factory->make();
+  const probe::Probe source = probe_of(description);
+  std::uint32_t key = 77;
+  for (ShadingPoint point : shading_points()) {
+    const HalfHidden occlusion(frame_about(point.n).t);
+    point.occlusion = &occlusion;
+    sampler->prepare(point, scene.materials()[0]);
+    const double truth = quadrature(scene, point, source);
+    const auto [mean, own_error] = estimate_with(scene, *sampler, point, key++);
+    const double error = std::max(own_error, true_error(scene, *sampler, point, source, truth));
+    CHECK(std::abs(mean - truth) < 4.5 * error + 1e-3 * truth);
+    std::vector<DirectionSample> samples(1000);
+    sampler->sample({Points::Random, key++, 0}, samples);
+    for (const DirectionSample& s : samples)
+      REQUIRE(sampler->pdf(s.direction, 1000) == Approx(s.pdf).epsilon(1e-3));
+  }
+}

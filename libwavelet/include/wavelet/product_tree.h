@@ -51,7 +51,7 @@ public:
 
   /// The leaf that a node's negative child names.
   ProductLeaf leaf(std::int32_t child) const {
-    return m_leaves.empty() ? leaf_at_slot(~child) : m_leaves[static_cast<std::size_t>(~child)];
+    return m_leaves.empty() ? leaf_at_slot(~child) : m_leaves[static_cast<std::uint32_t>(~child)];
   }
 
   /// The tree that a leaf's node is of.
@@ -119,7 +119,7 @@ private:
 
   TreeDensity density(std::int32_t child) const {
     return m_leaves.empty() ? density(leaf_at_slot(~child))
-                            : density(m_leaves[static_cast<std::size_t>(~child)]);
+                            : density(m_leaves[static_cast<std::uint32_t>(~child)]);
   }
 
   TreeDensity density(const ProductLeaf& l) const {

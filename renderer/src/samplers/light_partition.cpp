@@ -145,7 +145,7 @@ void LightPartition::split(int index, std::span<const float> fresh) {
   for (int i = 0; i < 4; ++i) {
     Values values;
     std::copy_n(corners[i], 4, values.corner);
-    values.centre = fresh[static_cast<std::size_t>(4 + i)];
+    values.centre = fresh[4 + static_cast<std::size_t>(i)];
     add(quarter(node.range, i), values);
   }
 }
@@ -230,9 +230,9 @@ float LightPartition::pdf(const Vec2& uv) const {
   const Node* node = m_nodes.data();
   while (node->child >= 0) {
     const PixelRange& r = node->range;
-    const int right = x >= middle(r.x0, r.x1) ? 1 : 0;
-    const int below = y >= middle(r.y0, r.y1) ? 2 : 0;
-    node = &m_nodes[static_cast<std::size_t>(node->child + right + below)];
+    const std::size_t right = x >= middle(r.x0, r.x1) ? 1 : 0;
+    const std::size_t below = y >= middle(r.y0, r.y1) ? 2 : 0;
+    node = &m_nodes[static_cast<std::size_t>(node->child) + right + below];
   }
   return density(*node, m_picture.sums.sum({x, y, x + 1, y + 1}), uv);
 }

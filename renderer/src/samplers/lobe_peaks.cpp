@@ -27,6 +27,7 @@ LobePeak find_peak(const ShadingPoint& point, const Material& material) {
   lobe.prepare(point, material);
   lobe.sample(points, samples);
   std::vector<Vec3> directions;
+  directions.reserve(samples.size() + 1);
   for (const DirectionSample& s : samples)
     directions.push_back(s.direction);
   directions.push_back(point.reflection.frame.n);

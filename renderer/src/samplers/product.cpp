@@ -1,4 +1,8 @@
 // The world-frame product: one light tree, and the reflectance's averages on the fly.
+//
+// Where something may be in the light's way, a share of the samples follows the light itself: what
+// a square of the product that counts as hidden lets through then weighs no more than its
+// reflectance.
 
 #include "kinds.h"
 #include "product_tree_sampler.h"
@@ -11,7 +15,7 @@ namespace {
 class ProductSampler : public ProductTreeSampler {
 public:
   ProductSampler(const Light& light, const wavelet::AdaptiveOptions& options)
-      : m_builder(light.tree()), m_options(options) {}
+      : m_light(light), m_builder(light.tree()), m_options(options) {}
 
   void forget() override { m_follows = false; }
 
@@ -20,12 +24,51 @@ public:
     m_product = m_follows ? &m_builder.follow(reflectance, m_options, point.occlusion)
                           : &m_builder.build(reflectance, m_options, point.occlusion);
     m_follows = true;
+    m_mixes = point.occlusion != nullptr && !m_product->empty();
+  }
+
+  void sample(const PointSource& points, std::span<DirectionSample> out) override {
+    const std::size_t of_light = m_mixes ? light_count(out.size()) : 0;
+    const std::span<DirectionSample> own = out.first(out.size() - of_light);
+    ProductTreeSampler::sample(points, own);
+    if (of_light == 0)
+      return;
+    const float share = static_cast<float>(of_light) / static_cast<float>(out.size());
+    for (DirectionSample& s : own)
+      s.pdf = (1 - share) * s.pdf + share * m_light.pdf(s.direction);
+    sample_light(points, share, out.last(of_light));
+  }
+
+  float pdf(const Vec3& direction, std::size_t count) const override {
+    const float own = ProductTreeSampler::pdf(direction, count);
+    if (!m_mixes)
+      return own;
+    const float share = static_cast<float>(light_count(count)) / static_cast<float>(count);
+    return (1 - share) * own + share * m_light.pdf(direction);
   }
 
 private:
+  static std::size_t light_count(std::size_t count) { return count / 4; }
+
+  void sample_light(const PointSource& points, float share, std::span<DirectionSample> out) {
+    m_points.resize(out.size());
+    m_samples.resize(out.size());
+    points.fill(0, m_points);
+    m_light.sample(m_points, m_samples);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const Vec3& direction = m_samples[i].direction;
+      out[i] = {direction,
+                (1 - share) * ProductTreeSampler::pdf(direction, 1) + share * m_samples[i].pdf};
+    }
+  }
+
+  const Light& m_light;
   wavelet::AdaptiveProduct m_builder;
   wavelet::AdaptiveOptions m_options;
   bool m_follows = false;
+  bool m_mixes = false;
+  std::vector<Vec2> m_points;
+  std::vector<probe::LightSample> m_samples;
 };
 
 } // namespace

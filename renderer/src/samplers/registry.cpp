@@ -15,7 +15,7 @@ constexpr std::array entries = {
     Entry{.traits = {.kind = SamplerKind::Product,
                      .name = "product",
                      .summary = "one light tree times the BRDF's averages, built on the fly",
-                     .needs = NeedsLightTree | NeedsMaterialTrees,
+                     .needs = NeedsLightTree | NeedsMaterialTrees | NeedsLightDistribution,
                      .follows_product = true},
           .make = make_product_factory},
     Entry{.traits = {.kind = SamplerKind::ProductTable,
