@@ -84,7 +84,8 @@ void require_distinct(const std::vector<std::string>& paths, const std::string& 
   std::set<std::string> names;
   for (const std::string& path : paths)
     if (path.empty() || !names.insert(stem_of(path)).second)
-      throw tool::UsageError(option + ": '" + path + "' has no name of its own");
+      throw tool::UsageError(
+          std::string(option).append(": '").append(path).append("' has no name of its own"));
 }
 
 } // namespace

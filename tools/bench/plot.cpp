@@ -69,6 +69,7 @@ std::string labels(std::vector<Series> series, const Axis& x, const Axis& y) {
     return a.points.back().second > b.points.back().second;
   });
   std::vector<double> heights;
+  heights.reserve(series.size());
   for (const Series& one : series)
     heights.push_back(y.place(one.points.back().second));
   spread(heights);
