@@ -1,6 +1,6 @@
 // Samplers that follow the light alone: the alias table, and lamps in place of regions.
 
-#include "sampler_fixture.h"
+#include "sampler_checks.h"
 
 #include <algorithm>
 #include <numeric>

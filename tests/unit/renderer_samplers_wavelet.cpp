@@ -1,4 +1,4 @@
-#include "sampler_fixture.h"
+#include "sampler_checks.h"
 
 using namespace haarlight;
 using namespace haarlight::renderer;

@@ -1,9 +1,6 @@
+#include "lobe_trees.h"
 #include "product_of.h"
 #include "random_map.h"
-
-#include <wavelet/adaptive_product.h>
-#include <wavelet/compress.h>
-#include <wavelet/sphere_map.h>
 
 #include <catch2/catch.hpp>
 
@@ -13,29 +10,6 @@ using namespace haarlight;
 using namespace haarlight::wavelet;
 
 namespace {
-
-Tree tree_of(const Map& map, double tolerance) {
-  CompressOptions options;
-  options.threshold.criterion = Criterion::L2;
-  options.threshold.tolerance = tolerance;
-  options.coefficients = CoefficientType::Float;
-  CompressReport report;
-  return compress_map(map, options, report);
-}
-
-/// A lobe about +z over a dim hemisphere, a little darker for each further entry.
-Map lobe_map(int size, int entry) {
-  Map map(size);
-  for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x) {
-      const Vec3 w =
-          square_to_sphere(Vec2((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
-                                (static_cast<float>(y) + 0.5F) / static_cast<float>(size)));
-      const float lobe = 30 * std::exp(40 * (w.z() - 1)) + 0.1F * std::max(0.0F, w.z());
-      map.set(x, y, Rgb(1.0F, 0.8F, 0.5F) * lobe / static_cast<float>(1 + entry));
-    }
-  return map;
-}
 
 double luminance_of_product(const Map& a, const Map& b, int x, int y) {
   return static_cast<double>(luminance(a.at(x, y) * b.at(x, y)));
@@ -55,11 +29,6 @@ Map dense_product(const Map& light, const Map& reflectance, const SquareSymmetry
       result.set(x, y, light.at(x, y) * value);
     }
   return result;
-}
-
-RotatedReflectance reflectance_at(const Pyramid& pyramid, const Vec3& n, const Vec3& wo,
-                                  float blend) {
-  return {&pyramid, 0, 1, blend, reflection_frame(n, wo)};
 }
 
 } // namespace
@@ -200,155 +169,6 @@ TEST_CASE("adaptive products sample what their pdf says, everywhere above the ho
       if (n.dot(square_to_sphere(p)) > 0)
         REQUIRE(product.pdf(p.x(), p.y()) > 0);
     }
-  }
-}
-
-TEST_CASE("products that follow others sample and integrate as those built afresh do") {
-  const Tree light = tree_of(random_map(256, 9), 0.1);
-  const Tree lobes[2] = {tree_of(lobe_map(256, 0), 0.01), tree_of(lobe_map(256, 1), 0.01)};
-  const TreeView views[2] = {lobes[0].view(), lobes[1].view()};
-  const Pyramid pyramid(views);
-  AdaptiveProduct following(light.view());
-  AdaptiveProduct fresh(light.view());
-  std::mt19937 generator(4);
-  std::uniform_real_distribution<float> uniform(0, 1);
-  std::size_t kept = 0;
-  for (int step = 0; step < 40; ++step) { // round half of the sphere, and once across it
-    const float turn = step < 39 ? 0.08F * static_cast<float>(step) : -1.5F;
-    const Vec3 n(std::cos(turn), 0.6F * std::sin(turn), 0.8F * std::sin(turn));
-    const Vec3 wo = (n + 0.9F * frame_about(n).t).normalized();
-    const auto reflectance = reflectance_at(pyramid, n, wo, 0.5F);
-    const ProductTree& product = following.follow(reflectance, {.drift_bound = 0});
-    const ProductTree& built = fresh.build(reflectance, {});
-    kept += product.leaf_count() != built.leaf_count() ? 1 : 0;
-    CHECK(product.leaf_count() < 2 * built.leaf_count());
-    CHECK(luminance(product.integral()) == Approx(luminance(built.integral())).epsilon(0.02));
-    for (int i = 0; i < 2000; ++i) {
-      const Vec2 p(uniform(generator), uniform(generator));
-      if (n.dot(square_to_sphere(p)) > 0)
-        REQUIRE(product.pdf(p.x(), p.y()) > 0);
-    }
-    if (step % 13 != 12)
-      continue;
-    const auto result = chi_square_of(product, 16);
-    CHECK(result.pdf_sum == Approx(1).margin(2e-3));
-    CHECK(result.statistic < result.limit);
-  }
-  CHECK(kept > 10);
-}
-
-TEST_CASE("products that are kept for points nearby reach all that these need, at little loss") {
-  const Tree light = tree_of(random_map(128, 9), 0.1);
-  const Tree lobe = tree_of(lobe_map(128, 0), 0.01);
-  const TreeView views[2] = {lobe.view(), lobe.view()};
-  const Pyramid pyramid(views);
-  AdaptiveProduct following(light.view());
-  AdaptiveProduct fresh(light.view());
-  int kept = 0;
-  float last = 0;
-  for (int step = 0; step < 60; ++step) {
-    const float turn = 0.003F * static_cast<float>(step);
-    const Vec3 n(std::cos(turn), 0.6F * std::sin(turn), 0.8F * std::sin(turn));
-    const Vec3 wo = (n + 1.5F * frame_about(n).t).normalized();
-    const auto reflectance = reflectance_at(pyramid, n, wo, 0.5F);
-    const ProductTree& product = following.follow(reflectance, {});
-    const float integral = luminance(product.integral());
-    kept += integral == last ? 1 : 0;
-    last = integral;
-    const ProductTree& own = fresh.build(reflectance, {});
-    double square = 0;
-    double mass = 0;
-    for (int i = 0; i < 128 * 128; ++i) {
-      const Vec2 p((static_cast<float>(i % 128) + 0.5F) / 128,
-                   (static_cast<float>(i / 128) + 0.5F) / 128);
-      if (n.dot(square_to_sphere(p)) <= 0)
-        continue;
-      const auto target = static_cast<double>(own.pdf(p.x(), p.y()));
-      const auto density = static_cast<double>(product.pdf(p.x(), p.y()));
-      REQUIRE(density > 0);
-      square += target * target / density;
-      mass += target;
-    }
-    CHECK(square * 128 * 128 / (mass * mass) < 1.05);
-  }
-  CHECK(kept > 10);
-  CHECK(kept < 59);
-}
-
-namespace {
-
-/// Everything on one side of a plane.
-class HalfHidden : public Occlusion {
-public:
-  explicit HalfHidden(const Vec3& side) : m_side(side) {}
-  bool hides(const Vec3& w) const { return m_side.dot(w) > 0; }
-  void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override {
-    for (std::size_t i = 0; i < directions.size(); ++i)
-      hidden[i] = hides(directions[i]) ? 1 : 0;
-  }
-
-private:
-  Vec3 m_side;
-};
-
-/// Second moment of the target's visible part over the density, relative to its squared mean.
-double relative_square(const ProductTree& target, const ProductTree& density,
-                       const HalfHidden& occlusion) {
-  double square = 0;
-  double mean = 0;
-  for (int i = 0; i < 128 * 128; ++i) {
-    const Vec2 p((static_cast<float>(i % 128) + 0.5F) / 128,
-                 (static_cast<float>(i / 128) + 0.5F) / 128);
-    const auto f = static_cast<double>(target.pdf(p.x(), p.y()));
-    if (f <= 0 || occlusion.hides(square_to_sphere(p)))
-      continue;
-    mean += f / (128 * 128);
-    square += f * f / static_cast<double>(density.pdf(p.x(), p.y())) / (128 * 128);
-  }
-  return square / (mean * mean);
-}
-
-} // namespace
-
-TEST_CASE("products that know what is in the way spend few samples there, and miss nothing") {
-  const Tree light = tree_of(random_map(128, 9), 0.1);
-  const Tree lobe = tree_of(lobe_map(128, 0), 0.01);
-  const TreeView views[2] = {lobe.view(), lobe.view()};
-  const Pyramid pyramid(views);
-  AdaptiveProduct plain(light.view());
-  AdaptiveProduct knowing(light.view());
-  for (int step = 0; step < 6; ++step) {
-    const float turn = 0.02F * static_cast<float>(step);
-    const Vec3 n(std::sin(turn), 0, std::cos(turn));
-    const auto reflectance = reflectance_at(pyramid, n, n, 0);
-    const HalfHidden occlusion(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)));
-    const ProductTree& all = plain.build(reflectance, {});
-    const ProductTree& open = knowing.follow(reflectance, {}, &occlusion);
-    CHECK(luminance(open.integral()) == Approx(luminance(all.integral())).epsilon(0.02));
-    CHECK(relative_square(all, open, occlusion) < 10);
-    CHECK(relative_square(all, all, occlusion) > 1.3 * relative_square(all, open, occlusion));
-    const auto result = chi_square_of(open, 16);
-    CHECK(result.pdf_sum == Approx(1).margin(2e-3));
-    CHECK(result.statistic < result.limit);
-    CHECK(relative_square(all, knowing.follow(reflectance, {}), HalfHidden(Vec3::Zero())) < 1.1);
-  }
-}
-
-TEST_CASE("products that may not grow follow to far points all the same") {
-  const Tree light = tree_of(random_map(256, 9), 0.1);
-  const Tree lobe = tree_of(lobe_map(256, 0), 0.01);
-  const TreeView views[2] = {lobe.view(), lobe.view()};
-  const Pyramid pyramid(views);
-  AdaptiveProduct following(light.view());
-  AdaptiveProduct fresh(light.view());
-  const AdaptiveOptions scarce = {.variance_bound = 1e-4F, .max_leaves = 300};
-  for (int step = 0; step < 12; ++step) {
-    const float turn = 0.5F * static_cast<float>(step);
-    const Vec3 n(std::cos(turn), std::sin(turn), 0);
-    const auto reflectance = reflectance_at(pyramid, n, n, 0);
-    const Rgb kept = following.follow(reflectance, scarce).integral();
-    CHECK(luminance(kept) ==
-          Approx(luminance(fresh.build(reflectance, scarce).integral())).epsilon(0.02));
   }
 }
 
