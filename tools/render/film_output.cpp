@@ -1,6 +1,7 @@
 #include <render/film_output.h>
 
 #include <support/tool.h>
+#include <support/words.h>
 
 #include <image/image_exr.h>
 #include <image/png.h>
@@ -33,6 +34,16 @@ std::vector<std::string> sources_of(const SceneDescription& scene) {
   return files;
 }
 
+/// The options of all samplers, so that they need not be told apart here.
+void set_sampling(const SamplerOptions& sampling, Provenance& result) {
+  result.set("product variance", short_text(static_cast<double>(sampling.product.variance_bound)));
+  result.set("product drift", short_text(static_cast<double>(sampling.product.drift_bound)));
+  result.set("product leaves", std::to_string(sampling.product.max_leaves));
+  result.set("candidates", std::to_string(sampling.candidates));
+  result.set("regions", std::to_string(sampling.regions));
+  result.set("pps samples", std::to_string(sampling.pps_samples));
+}
+
 Provenance provenance_of(const SceneDescription& scene, const RenderOptions& options, int spp) {
   Provenance result;
   result.set("version", version_text());
@@ -45,6 +56,7 @@ Provenance provenance_of(const SceneDescription& scene, const RenderOptions& opt
   result.set("points", options.points == Points::Sobol ? "sobol" : "random");
   result.set("spp", std::to_string(spp));
   result.set("seed", std::to_string(options.seed));
+  set_sampling(options.sampling, result);
   return result;
 }
 
