@@ -38,6 +38,20 @@ void check_scenes(const Plan& plan) {
   }
 }
 
+std::vector<Row> rows_of(const std::vector<PairResult>& pairs) {
+  std::vector<Row> rows;
+  for (const PairResult& pair : pairs)
+    rows.insert(rows.end(), pair.rows.begin(), pair.rows.end());
+  return rows;
+}
+
+void write_rows(const Plan& plan, const std::vector<PairResult>& pairs) {
+  const std::vector<Row> rows = rows_of(pairs);
+  write_text(plan.folder + "/results.json", json_text(rows));
+  write_text(plan.folder + "/results.csv", csv_text(rows));
+}
+
+/// Writes the rows of each pair as it is done: long runs that are stopped have not been in vain.
 std::vector<PairResult> measure_all(const tool::Tool& app, const Plan& plan,
                                     const Collection& collection) {
   const std::size_t count = collection.brdfs.size() * collection.probes.size() * plan.scenes.size();
@@ -53,19 +67,13 @@ std::vector<PairResult> measure_all(const tool::Tool& app, const Plan& plan,
     for (const Entry& probe : collection.probes)
       for (const std::string& scene : plan.scenes) {
         pairs.push_back(measure_pair(plan, brdf, probe, scene, work));
+        write_rows(plan, pairs);
         const PairResult& pair = pairs.back();
         if (!pair.light_note.empty())
           app.detail(probe.subject.path + ": " + pair.light_note);
         app.detail(pair.brdf + ", " + pair.probe + ", " + pair.scene + ": done");
       }
   return pairs;
-}
-
-std::vector<Row> rows_of(const std::vector<PairResult>& pairs) {
-  std::vector<Row> rows;
-  for (const PairResult& pair : pairs)
-    rows.insert(rows.end(), pair.rows.begin(), pair.rows.end());
-  return rows;
 }
 
 int compare_samplers(const tool::Tool& app, Plan& plan) {
@@ -75,10 +83,7 @@ int compare_samplers(const tool::Tool& app, Plan& plan) {
   require_writable(plan.folder);
   make_trees(plan, Cache(app, plan.folder + "/cache", plan.cache), collection);
   const std::vector<PairResult> pairs = measure_all(app, plan, collection);
-  const std::vector<Row> rows = rows_of(pairs);
-  const std::vector<Verdict> verdicts = verdicts_of(rows);
-  write_text(plan.folder + "/results.json", json_text(rows));
-  write_text(plan.folder + "/results.csv", csv_text(rows));
+  const std::vector<Verdict> verdicts = verdicts_of(rows_of(pairs));
   write_text(plan.folder + "/report.html", page_html(plan, pairs, verdicts));
   app.print(describe(verdicts));
   return tool::exit_ok;

@@ -45,14 +45,11 @@ void declare(tool::Tool& app, Options& options) {
 void require_writable(const std::string& path) { const OutputFile trial(path); }
 
 /// Refuses contradictions and unwritable outputs before any work is done.
-void check(const tool::Tool& app, Options& options) {
+void check(Options& options) {
   if (const auto problem = problem_of(options.render.sampler, options.render.estimator))
     throw tool::UsageError(*problem);
   if (options.seed > 0xFFFFFFFFU)
     throw tool::UsageError("--seed: must be below 2^32");
-  if (!app.given("--product-variance"))
-    options.render.sampling.product.variance_bound =
-        default_variance_bound(options.render.estimator);
   options.render.seed = static_cast<std::uint32_t>(options.seed);
   require_writable(options.output);
   if (!options.png.empty())
@@ -60,7 +57,7 @@ void check(const tool::Tool& app, Options& options) {
 }
 
 int render_scene(const tool::Tool& app, Options& options) {
-  check(app, options);
+  check(options);
   SceneDescription description = load_scene(options.scene);
   if (!options.size.empty())
     tool::set_film_size(options.size, description);

@@ -30,7 +30,7 @@ int default_map_size(const Probe& probe, int orientations) {
   if (orientations > 1)
     return 128;
   int size = 512;
-  while (size < 2048 && size < 0.8 * probe.width())
+  while (size < 2048 && size < 3.2 * probe.width())
     size *= 2;
   return size;
 }

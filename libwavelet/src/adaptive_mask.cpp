@@ -18,24 +18,17 @@ constexpr float least_kept = 0.04F;
 /// Hiding moves the weight to other squares, which are then refined and tested in turn.
 constexpr int rounds = 3;
 
-/// The direction of a point of a leaf's square. @param s,t in [0, 1]
-Vec3 direction_in(const ProductLeaf& leaf, float s, float t) {
-  const float side = power_of_two(-leaf.level);
-  return square_to_sphere(
-      Vec2((static_cast<float>(leaf.x) + s) * side, (static_cast<float>(leaf.y) + t) * side));
-}
-
-void add_quadrants(const ProductLeaf& leaf, std::vector<Vec3>& directions) {
-  for (const float t : {0.25F, 0.75F})
-    for (const float s : {0.25F, 0.75F})
-      directions.push_back(direction_in(leaf, s, t));
+Vec3 center_of(const detail::Square& square) {
+  const float side = power_of_two(-square.level);
+  return square_to_sphere(Vec2((static_cast<float>(square.x) + 0.5F) * side,
+                               (static_cast<float>(square.y) + 0.5F) * side));
 }
 
 } // namespace
 
 void AdaptiveProduct::mask(const AdaptiveOptions& options, const Occlusion& occlusion) {
   // A point in deep shadow has little light left to be right about: no more than as much again.
-  m_limit = std::min(m_limit, 2 * m_product.m_leaf_count);
+  m_limit = std::min(m_limit, 2 * m_product.leaf_count());
   for (int round = 0; round < rounds && hide(occlusion); ++round)
     refine(options);
   m_limit = static_cast<std::size_t>(options.max_leaves);
@@ -52,7 +45,8 @@ bool AdaptiveProduct::hide(const Occlusion& occlusion) {
     m_shares[m_candidates[i]].tested = true;
     if (m_hidden[i] == 0)
       continue;
-    add_quadrants(m_product.m_leaves[m_candidates[i]], m_directions);
+    for (unsigned q = 0; q < 4; ++q)
+      m_directions.push_back(center_of(square(m_candidates[i]).quadrant(q)));
     m_candidates[hidden++] = m_candidates[i];
   }
   m_hidden.resize(4 * hidden);
@@ -70,38 +64,38 @@ void AdaptiveProduct::find_candidates() {
   m_candidates.clear();
   m_directions.clear();
   const auto least = static_cast<float>(least_share * m_weight);
-  for (std::size_t i = 0; i < m_shares.size(); ++i) {
-    const ProductLeaf& leaf = m_product.m_leaves[i];
-    if (m_shares[i].tested || !(m_shares[i].density * power_of_two(-2 * leaf.level) > least))
+  for (std::uint32_t slot = 0; slot < slot_count(); ++slot) {
+    if (m_shares[slot].tested || !(m_shares[slot].density * area(slot) > least))
       continue;
-    m_candidates.push_back(static_cast<std::uint32_t>(i));
-    m_directions.push_back(direction_in(leaf, 0.5F, 0.5F));
+    m_candidates.push_back(slot);
+    m_directions.push_back(center_of(square(slot)));
   }
 }
 
 /// Leaves a leaf that had all of its density a share of it.
-void AdaptiveProduct::keep(std::uint32_t leaf, float share) {
-  m_shares[leaf].kept = share;
-  const ProductLeaf& square = m_product.m_leaves[leaf];
+void AdaptiveProduct::keep(std::uint32_t slot, float share) {
+  detail::LeafShare& leaf = m_shares[slot];
   const auto lost = static_cast<double>(1 - share);
-  m_weight -= lost * static_cast<double>(m_product.weight(square));
-  m_error -= lost * static_cast<double>(m_errors[leaf]);
-  m_errors[leaf] *= share;
-  m_product.weight_at(square.slot) = share * m_shares[leaf].density;
+  leaf.kept = share;
+  m_weight -= lost * static_cast<double>(leaf.density * area(slot));
+  m_error -= lost * static_cast<double>(m_errors[slot]);
+  m_errors[slot] *= share;
+  m_product.weight_at(static_cast<std::int32_t>(slot)) = share * leaf.density;
 }
 
 /// Gives every leaf its density back.
 void AdaptiveProduct::unmask() {
   m_weight = 0;
   m_error = 0;
-  for (std::size_t i = 0; i < m_shares.size(); ++i) {
-    detail::LeafShare& share = m_shares[i];
-    const ProductLeaf& leaf = m_product.m_leaves[i];
-    m_errors[i] /= share.kept;
+  for (std::uint32_t slot = 0; slot < slot_count(); ++slot) {
+    if (!is_leaf(slot))
+      continue;
+    detail::LeafShare& share = m_shares[slot];
+    m_errors[slot] /= share.kept;
     share = {share.density};
-    m_product.weight_at(leaf.slot) = share.density;
-    m_weight += static_cast<double>(share.density * power_of_two(-2 * leaf.level));
-    m_error += static_cast<double>(m_errors[i]);
+    m_product.weight_at(static_cast<std::int32_t>(slot)) = share.density;
+    m_weight += static_cast<double>(share.density * area(slot));
+    m_error += static_cast<double>(m_errors[slot]);
   }
   m_masked = false;
 }

@@ -2,6 +2,8 @@
 
 #include "product_kernel.h"
 
+#include <wavelet/sphere_map.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -20,9 +22,6 @@ constexpr float reflectance_floor = 0.005F;
 /// Share of a square's error that splitting it is taken to get rid of.
 constexpr double gain_of_splitting = 0.6;
 
-/// A cut that followed other points until it had this part more leaves than at first is given up.
-constexpr std::size_t growth = 8;
-
 /// Half octaves between 1 and a ratio above it, 31 at most: the float's exponent and first digit.
 std::size_t half_octave(float ratio) {
   return std::min((std::bit_cast<std::uint32_t>(ratio) >> 22U) - (127U << 1U), 31U);
@@ -33,27 +32,34 @@ float half_octave_start(std::size_t index) {
   return std::bit_cast<float>((static_cast<std::uint32_t>(index) + (127U << 1U)) << 22U);
 }
 
-std::uint16_t morton_column(unsigned code) {
-  return static_cast<std::uint16_t>((code & 1U) | ((code >> 1U) & 2U) | ((code >> 2U) & 4U));
+/// Nodes that every product has, those of fewer than start_level levels, and what part of them has
+/// no leaves.
+constexpr std::size_t nodes_above(int level) { return ((1ULL << (2 * level)) - 1) / 3; }
+constexpr std::size_t start_nodes = nodes_above(start_level);
+constexpr std::size_t inner_nodes = nodes_above(start_level - 1);
+
+/// Average and node of a square's four quadrants in a tree, of which the square's are given.
+void split_light(const TreeView& tree, const ProductLeaf& square, ProductLeaf* quadrants) {
+  std::array<Float4, 4> means;
+  means.fill(square.light);
+  if (square.node != no_node)
+    means = tree.details(square.node).children(square.light);
+  for (unsigned q = 0; q < 4; ++q) {
+    quadrants[q].light = means[q];
+    quadrants[q].node = tree.child(square.node, q);
+  }
 }
 
 } // namespace
 
-AdaptiveProduct::AdaptiveProduct(const TreeView& light) : m_light(light) {
+AdaptiveProduct::AdaptiveProduct(const TreeView& light) : m_light(light), m_start(4 * inner_nodes) {
   m_product.m_rests.resize(1);
   m_product.m_rests[0].tree = light;
-  // The families of level start_level − 1 and the nodes above them are the same for every product.
-  for (unsigned code = 0; code < (1U << (2 * (start_level - 1))); ++code) {
-    Family family = {to_lanes(light.mean), light.root(),        0,
-                     start_level - 1,      morton_column(code), morton_column(code >> 1U)};
-    for (int l = start_level - 2; l >= 0; --l) {
-      const unsigned q = (code >> static_cast<unsigned>(2 * l)) & 3U;
-      if (family.node != no_node)
-        family.light = light.details(family.node).children(family.light)[q];
-      family.node = light.child(family.node, q);
-    }
-    m_start.push_back(family);
-  }
+  ProductLeaf whole;
+  whole.light = to_lanes(light.mean);
+  whole.node = light.root();
+  for (std::size_t node = 0; node < inner_nodes; ++node) // node i is the quadrant of slot i − 1
+    split_light(light, node == 0 ? whole : m_start[node - 1], m_start.data() + 4 * node);
 }
 
 void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
@@ -69,35 +75,20 @@ void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
 const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
                                           const AdaptiveOptions& options,
                                           const Occlusion* occlusion) {
-  if (m_reflectance.pyramid != reflectance.pyramid)
-    m_drift_rate = -1;
   turn_to(reflectance, options);
   start();
   refine(options);
-  m_fresh_leaves = m_product.m_leaf_count;
   return finish(options, occlusion);
 }
 
 const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance,
                                            const AdaptiveOptions& options,
                                            const Occlusion* occlusion) {
-  if (m_reflectance.pyramid != reflectance.pyramid ||
-      m_product.m_leaf_count > m_fresh_leaves + m_fresh_leaves / growth)
+  if (!serves(reflectance, options.drift_bound))
     return build(reflectance, options, occlusion);
-  const float shift = squared_shift(reflectance.reflection);
-  if (serves(shift, options.drift_bound)) {
-    if (occlusion == nullptr && !m_masked)
-      return m_product;
-    unmask();
-    return finish(options, occlusion);
-  }
-  turn_to(reflectance, options);
-  const float drift = weigh_again();
-  m_drift_rate = shift > 0 ? drift / shift : m_drift_rate;
-  refine(options);
-  // With no leaves to spare, the old squares would stand in the way of those that matter now.
-  if (excess_error(options) > 0 && m_product.m_leaf_count + 3 > m_limit)
-    return build(reflectance, options, occlusion);
+  if (occlusion == nullptr && !m_masked)
+    return m_product;
+  unmask();
   return finish(options, occlusion);
 }
 
@@ -114,11 +105,20 @@ double AdaptiveProduct::excess_error(const AdaptiveOptions& options) const {
   return m_error - static_cast<double>(options.variance_bound) * m_weight;
 }
 
-/// Whether the product at hand will do as it is, so far from where it was weighed.
-bool AdaptiveProduct::serves(float squared_shift, float drift_bound) const {
-  const bool is_near = squared_shift < detail::kept_shift * detail::kept_shift;
-  const bool is_alike = m_drift_rate >= 0 && m_drift_rate * squared_shift < drift_bound;
-  return squared_shift == 0 || (is_near && is_alike);
+/// Whether the product at hand will do as it is, so far from where it was built.
+bool AdaptiveProduct::serves(const RotatedReflectance& reflectance, float drift_bound) const {
+  if (m_reflectance.pyramid != reflectance.pyramid)
+    return false;
+  const float shift = squared_shift(reflectance.reflection);
+  return shift == 0 ||
+         (shift < detail::kept_shift * detail::kept_shift && drift_rate() * shift < drift_bound);
+}
+
+/// Relative variance that a turn of the reflectance by one radian would add, were it to go on as it
+/// begins: squares change by their slopes over the angle that their side spans, half of it squared
+/// in the mean of all directions.
+float AdaptiveProduct::drift_rate() const {
+  return static_cast<float>(m_drift / (m_weight + 1e-30)) / (2 * sphere_area);
 }
 
 /// How far normal and mirror direction are from where the product was weighed: the sum of their
@@ -132,81 +132,53 @@ float AdaptiveProduct::squared_shift(const ReflectionFrame& reflection) const {
          (normal(reflection) - normal(old)).squaredNorm();
 }
 
-/// Keeps the squares of the product at hand, with the weights that they have now.
-/// @return the relative variance that the old weights would have added: Σ new²/old − 1, both of
-/// sum 1
-float AdaptiveProduct::weigh_again() {
-  const auto least = static_cast<float>(1e-6 * m_weight);
-  double old_weight = 0;
-  double squares = 0;
-  std::array<float, 4 * detail::family_batch> density;
-  const std::span<ProductLeaf> all = m_product.m_leaves;
-  m_error = 0;
-  m_weight = 0;
-  m_masked = false;
-  for (std::size_t begin = 0; begin < all.size(); begin += density.size()) {
-    const auto batch = all.subspan(begin, std::min(density.size(), all.size() - begin));
-    detail::weigh_leaves(m_reflectance, m_product.m_rests[0].floor, batch, density.data(),
-                         m_errors.data() + begin);
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      // Places not in use have a slot of old, but no light, and what stands there is summed anew.
-      const auto slot = static_cast<std::uint32_t>(batch[i].slot);
-      const float area = power_of_two(-2 * batch[i].level);
-      const float old = m_shares[begin + i].density;
-      old_weight += static_cast<double>(old * area);
-      squares += static_cast<double>(area * density[i] * density[i] / (old + least));
-      m_shares[begin + i] = {density[i]};
-      m_product.m_nodes[slot / 4].weights[slot & 3U] = density[i];
-      m_weight += static_cast<double>(density[i] * area);
-      m_error += static_cast<double>(m_errors[begin + i]);
-    }
-  }
-  return static_cast<float>(squares * old_weight / (m_weight * m_weight + 1e-30) - 1);
-}
-
-/// A node whose weights are yet to come.
-std::int32_t AdaptiveProduct::new_node(std::int32_t slot) {
+/// A node whose weights are yet to come, in place of a leaf.
+void AdaptiveProduct::new_node(std::int32_t slot, const detail::Square& square) {
+  const std::size_t index = m_product.m_nodes.size();
   m_product.m_nodes.emplace_back();
+  m_squares.push_back(square);
   m_parent_slots.push_back(slot);
-  const auto index = static_cast<std::int32_t>(m_product.m_nodes.size() - 1);
   if (slot >= 0)
-    m_product.child(slot) = index;
-  return index;
+    m_product.child(slot) = static_cast<std::int32_t>(index);
+  if (m_errors.size() < 4 * m_product.m_nodes.size()) {
+    m_product.m_leaves.resize(8 * index + 4);
+    m_errors.resize(8 * index + 4);
+    m_shares.resize(8 * index + 4);
+  }
 }
 
-/// Lays out the nodes above start_level and looks at every family there.
+/// Makes a node of what is no leaf any more, or never was one.
+void AdaptiveProduct::split(std::uint32_t slot) {
+  m_errors[slot] = 0;
+  m_shares[slot] = {};
+  new_node(static_cast<std::int32_t>(slot), square(slot));
+}
+
+/// Lays out the nodes above start_level and looks at every square there.
 void AdaptiveProduct::start() {
   m_product.m_nodes.clear();
-  m_product.m_leaves.clear();
+  m_squares.clear();
   m_parent_slots.clear();
-  m_errors.clear();
-  m_shares.clear();
   m_masked = false;
-  m_free.clear();
   m_weight = 0;
   m_error = 0;
-  new_node(-1);
-  for (std::int32_t parent = 0; m_product.m_nodes.size() < 1 + m_start.size() / 4 + m_start.size();
-       ++parent)
-    for (std::int32_t q = 0; q < 4; ++q)
-      new_node(4 * parent + q);
-  m_families = m_start;
-  m_product.m_leaf_count = 4 * m_start.size();
-  auto node = static_cast<std::int32_t>(m_product.m_nodes.size() - m_start.size());
-  for (Family& family : m_families)
-    family.product_node = node++;
-  expand_all(std::numeric_limits<float>::infinity());
+  m_drift = 0;
+  new_node(-1, {});
+  for (std::uint32_t slot = 0; m_product.m_nodes.size() < start_nodes; ++slot)
+    split(slot);
+  std::ranges::copy(m_start, m_product.m_leaves.begin());
+  expand(inner_nodes, std::numeric_limits<float>::infinity());
 }
 
 /// Pass by pass, splits the squares that leave the most error, and their quadrants with them, until
 /// the bound holds.
 void AdaptiveProduct::refine(const AdaptiveOptions& options) {
   std::size_t before = 0;
-  while (m_product.m_leaf_count != before) {
+  while (m_product.leaf_count() != before) {
     const double excess = excess_error(options);
     if (!(excess > 0))
       return;
-    before = m_product.m_leaf_count;
+    before = m_product.leaf_count();
     split_above(threshold(excess));
   }
 }
@@ -215,9 +187,9 @@ void AdaptiveProduct::refine(const AdaptiveOptions& options) {
 /// gets rid of the excess.
 float AdaptiveProduct::threshold(double excess) const {
   const auto mean =
-      static_cast<float>(0.999 * m_error / static_cast<double>(m_product.m_leaf_count));
+      static_cast<float>(0.999 * m_error / static_cast<double>(m_product.leaf_count()));
   std::array<float, 32> error_above = {}; // by half octaves of error over the mean
-  for (const float error : m_errors)
+  for (const float error : std::span(m_errors).first(slot_count()))
     if (error > mean)
       error_above[half_octave(error / mean)] += error;
   double gain = 0;
@@ -228,93 +200,75 @@ float AdaptiveProduct::threshold(double excess) const {
 }
 
 void AdaptiveProduct::split_above(float threshold) {
-  m_families.clear();
-  for (std::size_t i = 0; i < m_errors.size(); ++i) {
-    if (!(m_errors[i] > threshold) || m_product.m_leaf_count + 3 > m_limit)
-      continue;
-    ProductLeaf& leaf = m_product.m_leaves[i];
-    m_error -= static_cast<double>(m_errors[i]);
-    m_weight -= static_cast<double>(m_product.weight(leaf));
-    split(leaf, m_families.emplace_back());
-    m_free.push_back(static_cast<std::uint32_t>(i));
-    leaf.light = Float4{};
-    m_errors[i] = 0;
-    m_shares[i] = {};
-  }
-  expand_all(threshold);
-}
-
-/// Replaces m_families by their quadrants, and those above the threshold by theirs.
-void AdaptiveProduct::expand_all(float threshold) {
-  std::array<detail::Quadrants, detail::family_batch> quadrants;
-  for (; !m_families.empty(); m_families.swap(m_next)) {
-    m_next.clear();
-    for (std::size_t begin = 0; begin < m_families.size(); begin += detail::family_batch) {
-      const auto batch =
-          std::span<const Family>(m_families)
-              .subspan(begin, std::min(detail::family_batch, m_families.size() - begin));
-      detail::weigh_families(m_light, m_reflectance, m_product.m_rests[0].floor, batch,
-                             quadrants.data());
-      for (std::size_t i = 0; i < batch.size(); ++i)
-        add(batch[i], quadrants[i], threshold);
+  const std::size_t first = m_product.m_nodes.size();
+  for (std::uint32_t slot = 0; slot < 4 * first; ++slot)
+    if (m_errors[slot] > threshold && has_room()) {
+      m_error -= static_cast<double>(m_errors[slot]);
+      m_weight -=
+          static_cast<double>(m_product.weight_at(static_cast<std::int32_t>(slot)) * area(slot));
+      m_drift -= drift_of(slot);
+      split(slot);
     }
+  expand(first, threshold);
+}
+
+/// Gives the nodes from `node` on their leaves, and those of them above the threshold nodes of
+/// their own, which follow.
+void AdaptiveProduct::expand(std::size_t node, float threshold) {
+  std::array<detail::Quadrants, detail::square_batch> quadrants;
+  while (node < m_product.m_nodes.size()) {
+    const std::size_t count = std::min(quadrants.size(), m_product.m_nodes.size() - node);
+    for (std::size_t i = 0; i < count; ++i)
+      see_light(node + i, quadrants[i]);
+    detail::weigh(m_reflectance, m_product.m_rests[0].floor,
+                  std::span(m_squares).subspan(node, count), quadrants.data());
+    for (std::size_t i = 0; i < count; ++i)
+      add_leaves(node + i, quadrants[i], threshold);
+    node += count;
   }
 }
 
-/// Makes leaves of a family's visible quadrants, or families of those above the threshold.
-void AdaptiveProduct::add(const Family& family, const detail::Quadrants& quadrants,
-                          float threshold) {
-  const std::int32_t level = family.level + 1;
-  m_product.m_nodes[static_cast<std::size_t>(family.product_node)].weights = quadrants.density;
-  m_product.m_leaf_count -= 4;
-  double density = 0;
+void AdaptiveProduct::see_light(std::size_t node, detail::Quadrants& quadrants) {
+  const auto parent = static_cast<std::size_t>(m_parent_slots[node]);
+  ProductLeaf* leaves = m_product.m_leaves.data() + 4 * node;
+  split_light(m_light, m_product.m_leaves[parent], leaves);
+  for (std::size_t q = 0; q < 4; ++q)
+    quadrants.light[q] = leaves[q].light;
+}
+
+void AdaptiveProduct::add_leaves(std::size_t node, const detail::Quadrants& quadrants,
+                                 float threshold) {
+  const int level = m_squares[node].level + 1;
+  m_product.m_nodes[node].weights = quadrants.density;
   for (unsigned q = 0; q < 4; ++q) {
-    ++m_product.m_leaf_count;
-    const bool splits = quadrants.error[q] > threshold && m_product.m_leaf_count + 3 <= m_limit;
-    const std::uint32_t place = splits ? 0 : new_leaf();
-    ProductLeaf& leaf = splits ? m_split : m_product.m_leaves[place];
-    leaf.light = quadrants.light[q];
-    leaf.reflectance = quadrants.reflectance[q];
-    leaf.node = quadrants.children[q];
-    leaf.slot = 4 * family.product_node + static_cast<std::int32_t>(q);
-    leaf.level = static_cast<std::uint8_t>(level);
-    leaf.x = static_cast<std::uint16_t>(2 * family.x + (q & 1U));
-    leaf.y = static_cast<std::uint16_t>(2 * family.y + (q >> 1U));
-    if (splits) {
-      split(leaf, m_next.emplace_back());
+    const auto slot = static_cast<std::uint32_t>(4 * node + q);
+    if (quadrants.error[q] > threshold && has_room()) {
+      split(slot);
       continue;
     }
-    m_errors[place] = quadrants.error[q];
-    m_shares[place] = {quadrants.density[q]};
-    m_product.child(leaf.slot) = ~static_cast<std::int32_t>(place);
-    m_error += static_cast<double>(quadrants.error[q]);
-    density += static_cast<double>(quadrants.density[q]);
+    m_product.m_leaves[slot].level = static_cast<std::uint8_t>(level);
+    m_product.m_nodes[node].child[q] = ~static_cast<std::int32_t>(slot);
+    set_leaf(slot, quadrants, q);
   }
-  m_weight += density * static_cast<double>(power_of_two(-2 * level));
 }
 
-/// Makes a product node of a square, which counts as four leaves from now on.
-void AdaptiveProduct::split(const ProductLeaf& square, Family& family) {
-  m_product.m_leaf_count += 3;
-  family.light = square.light;
-  family.node = square.node;
-  family.product_node = new_node(square.slot);
-  family.level = square.level;
-  family.x = square.x;
-  family.y = square.y;
+/// A leaf's numbers, and its part in the sums.
+void AdaptiveProduct::set_leaf(std::uint32_t slot, const detail::Quadrants& quadrants,
+                               std::size_t q) {
+  ProductLeaf& leaf = m_product.m_leaves[slot];
+  leaf.reflectance = quadrants.reflectance[q];
+  leaf.slope = {quadrants.slope_x[q], quadrants.slope_y[q]};
+  m_shares[slot] = {quadrants.density[q]};
+  m_errors[slot] = quadrants.error[q];
+  m_error += static_cast<double>(quadrants.error[q]);
+  m_weight += static_cast<double>(quadrants.density[q] * area(slot));
+  m_drift += static_cast<double>(quadrants.drift[q]);
 }
 
-/// A place for a leaf.
-std::uint32_t AdaptiveProduct::new_leaf() {
-  if (m_free.empty()) {
-    m_product.m_leaves.emplace_back();
-    m_errors.push_back(0);
-    m_shares.emplace_back();
-    return static_cast<std::uint32_t>(m_errors.size() - 1);
-  }
-  const std::uint32_t place = m_free.back();
-  m_free.pop_back();
-  return place;
+/// What a leaf adds to the weight times the drift rate, in squares of the unit square's side.
+double AdaptiveProduct::drift_of(std::uint32_t slot) const {
+  const Slope& slope = m_product.m_leaves[slot].slope;
+  return static_cast<double>(m_shares[slot].density * (slope.x * slope.x + slope.y * slope.y));
 }
 
 } // namespace haarlight::wavelet

@@ -36,8 +36,11 @@ void walk_all(TreeDensity* densities, Descent* descents, std::size_t count, Choo
 void descend_tree(std::span<TreeDensity> densities, std::span<Descent> descents) {
   for (std::size_t begin = 0; begin < descents.size(); begin += width) {
     Descent* d = descents.data() + begin;
-    walk_all(densities.data() + begin, d, std::min(width, descents.size() - begin),
-             [&](std::size_t i, Float4 w) { return steer(d[i], w); });
+    TreeDensity* density = densities.data() + begin;
+    const std::size_t count = std::min(width, descents.size() - begin);
+    walk_all(density, d, count, [&](std::size_t i, Float4 w) { return steer(d[i], w); });
+    for (std::size_t i = 0; i < count; ++i)
+      detail::spread(density[i], d[i]);
   }
 }
 
@@ -45,9 +48,13 @@ void follow_tree(std::span<TreeDensity> densities, std::span<const Vec2> points,
                  std::span<Descent> descents) {
   for (std::size_t begin = 0; begin < descents.size(); begin += width) {
     Descent* d = descents.data() + begin;
+    TreeDensity* density = densities.data() + begin;
     const Vec2* p = points.data() + begin;
-    walk_all(densities.data() + begin, d, std::min(width, descents.size() - begin),
+    const std::size_t count = std::min(width, descents.size() - begin);
+    walk_all(density, d, count,
              [&](std::size_t i, Float4 /*w*/) { return steer_to(d[i], p[i].x(), p[i].y()); });
+    for (std::size_t i = 0; i < count; ++i)
+      detail::follow_spread(density[i], p[i].x(), p[i].y(), d[i]);
   }
 }
 

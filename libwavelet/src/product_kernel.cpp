@@ -9,8 +9,16 @@ namespace {
 /// No square of level l reaches further than this times 2^-l radians from its centre.
 constexpr float square_radius = 4.4F;
 
-/// The quadrants' squares, as lanes: centres in the light's square, and where those lie in the
-/// reflectance's.
+/// Slopes seen between neighbours are taken this far, and no further than that: the integrand must
+/// not be missed where it does not go on as it began.
+constexpr float kept_slope = 0.8F;
+constexpr float most_slope = 1.6F;
+
+/// Share of a square's variance that no slope is trusted to explain.
+constexpr float unexplained = 0.2F;
+
+/// The quadrants of many squares, as lanes: centres in the light's square, and where those lie in
+/// the reflectance's.
 struct Lanes {
   int count = 0;
   float side[Pyramid::Places::capacity];
@@ -18,29 +26,17 @@ struct Lanes {
   Pyramid::Places places;
 };
 
-void set_square(const Pyramid& pyramid, int level, int x, int y, std::size_t i, Lanes& lanes) {
-  const float side = power_of_two(-level);
-  lanes.side[i] = side;
-  lanes.places.u[i] = (static_cast<float>(x) + 0.5F) * side;
-  lanes.places.v[i] = (static_cast<float>(y) + 0.5F) * side;
-  pyramid.set_level(lanes.places, i, level);
-}
-
-void gather(std::span<const Family> families, const Pyramid& pyramid, Lanes& lanes) {
-  lanes.count = 4 * static_cast<int>(families.size());
-  for (std::size_t f = 0; f < families.size(); ++f)
-    for (unsigned q = 0; q < 4; ++q)
-      set_square(pyramid, families[f].level + 1, 2 * families[f].x + static_cast<int>(q & 1U),
-                 2 * families[f].y + static_cast<int>(q >> 1U), 4 * f + q, lanes);
-}
-
-/// Leaves to lanes, up to a multiple of four with the last one again.
-void gather(std::span<const ProductLeaf> leaves, const Pyramid& pyramid, Lanes& lanes) {
-  lanes.count = (static_cast<int>(leaves.size()) + 3) / 4 * 4;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(lanes.count); ++i) {
-    const ProductLeaf& leaf = leaves[std::min(i, leaves.size() - 1)];
-    set_square(pyramid, leaf.level, leaf.x, leaf.y, i, lanes);
-  }
+void gather(std::span<const Square> squares, const Pyramid& pyramid, Lanes& lanes) {
+  lanes.count = 4 * static_cast<int>(squares.size());
+  for (std::size_t i = 0; i < squares.size(); ++i)
+    for (unsigned q = 0; q < 4; ++q) {
+      const Square quadrant = squares[i].quadrant(q);
+      const float side = power_of_two(-quadrant.level);
+      lanes.side[4 * i + q] = side;
+      lanes.places.u[4 * i + q] = (static_cast<float>(quadrant.x) + 0.5F) * side;
+      lanes.places.v[4 * i + q] = (static_cast<float>(quadrant.y) + 0.5F) * side;
+      pyramid.set_level(lanes.places, 4 * i + q, quadrant.level);
+    }
 }
 
 /// From points of the light's square to points of the reflectance's.
@@ -58,7 +54,7 @@ void rotate(const ReflectionFrame& r, Lanes& lanes) {
   }
 }
 
-/// The reflectance over a family's quadrants, those above the horizon.
+/// The reflectance over a square's quadrants, those above the horizon.
 void look_up(const RotatedReflectance& reflectance, const Lanes& lanes, std::size_t first,
              Quadrants& quadrants) {
   quadrants.visible = 0;
@@ -76,9 +72,31 @@ void look_up(const RotatedReflectance& reflectance, const Lanes& lanes, std::siz
   }
 }
 
-/// Weights and errors, from averages of light and reflectance.
-/// @param area of the squares that may be split further, else 0
-void weigh(Float4 floor, Float4 area, Quadrants& quadrants) {
+/// Each quadrant's neighbour along x; along y.
+Float4 beside(Float4 v) { return __builtin_shufflevector(v, v, 1, 0, 3, 2); }
+Float4 over(Float4 v) { return __builtin_shufflevector(v, v, 2, 3, 0, 1); }
+
+/// The relative slope from `here` to the neighbour `there`, which lies towards higher coordinates
+/// (1) or lower (−1). Over the mean of both, which suits lobes that fall off by ratios.
+Float4 slope_between(Float4 here, Float4 there, Float4 towards) {
+  return 2 * towards * (there - here) / (here + there + 1e-30F);
+}
+
+/// Slopes of light times reflectance as far as reflectance makes them.
+/// @param beside,above densities that the quadrants' light would have with the reflectance of their
+///        neighbours along x and y
+void set_slopes(Float4 beside, Float4 above, Quadrants& quadrants) {
+  const Float4 x = slope_between(quadrants.density, beside, Float4{1, -1, 1, -1});
+  const Float4 y = slope_between(quadrants.density, above, Float4{1, 1, -1, -1});
+  const Float4 most = Float4{} + most_slope;
+  const Float4 kept = kept_slope * most / larger(absolute(x) + absolute(y), most);
+  quadrants.slope_x = x * kept;
+  quadrants.slope_y = y * kept;
+}
+
+/// Densities, slopes and errors, from averages of light and reflectance.
+/// @param area of the quadrants if they may be split further, else 0
+void combine(Float4 floor, float area, Quadrants& quadrants) {
   auto [lr, lg, lb, l0] = quadrants.light;
   auto [br, bg, bb, deviation] = quadrants.reflectance;
   transpose(lr, lg, lb, l0);
@@ -87,10 +105,20 @@ void weigh(Float4 floor, Float4 area, Quadrants& quadrants) {
   const Float4 r = larger(br, zero + floor[0]) * luminance_lanes[0];
   const Float4 g = larger(bg, zero + floor[1]) * luminance_lanes[1];
   const Float4 b = larger(bb, zero + floor[2]) * luminance_lanes[2];
+  const auto density = [&](Float4 red, Float4 green, Float4 blue) {
+    return larger(lr * red + lg * green + lb * blue, zero);
+  };
   const Int4 above = (Int4{1, 2, 4, 8} & static_cast<int>(quadrants.visible)) != 0;
-  quadrants.density = select(above, larger(lr * r + lg * g + lb * b, zero), zero);
+  quadrants.density = select(above, density(r, g, b), zero);
+  set_slopes(density(beside(r), beside(g), beside(b)), density(over(r), over(g), over(b)),
+             quadrants);
   const Float4 relative = deviation / (r + g + b + 1e-30F);
-  quadrants.error = area * quadrants.density * relative * relative;
+  const Float4 variance = relative * relative;
+  const Float4 squares =
+      quadrants.slope_x * quadrants.slope_x + quadrants.slope_y * quadrants.slope_y;
+  quadrants.drift = quadrants.density * squares;
+  quadrants.error =
+      area * quadrants.density * larger(variance - squares / 12, unexplained * variance);
 }
 
 float splittable_area(const Pyramid& pyramid, int level) {
@@ -99,52 +127,16 @@ float splittable_area(const Pyramid& pyramid, int level) {
 
 } // namespace
 
-HAARLIGHT_CPU_CLONES void weigh_families(const TreeView& light,
-                                         const RotatedReflectance& reflectance, Float4 floor,
-                                         std::span<const Family> families, Quadrants* out) {
+HAARLIGHT_CPU_CLONES void weigh(const RotatedReflectance& reflectance, Float4 floor,
+                                std::span<const Square> squares, Quadrants* quadrants) {
   const Pyramid& pyramid = *reflectance.pyramid;
   Lanes lanes;
-  gather(families, pyramid, lanes);
+  gather(squares, pyramid, lanes);
   rotate(reflectance.reflection, lanes);
   pyramid.place(lanes.places, lanes.count);
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    const Family& family = families[f];
-    look_up(reflectance, lanes, 4 * f, out[f]);
-    if (family.node != no_node) {
-      out[f].light = light.details(family.node).children(family.light);
-      out[f].children = light.children(family.node);
-    } else {
-      out[f].light.fill(family.light);
-      out[f].children.fill(no_node);
-    }
-    weigh(floor, Float4{} + splittable_area(pyramid, family.level + 1), out[f]);
-  }
-}
-
-HAARLIGHT_CPU_CLONES void weigh_leaves(const RotatedReflectance& reflectance, Float4 floor,
-                                       std::span<ProductLeaf> leaves, float* density,
-                                       float* error) {
-  const Pyramid& pyramid = *reflectance.pyramid;
-  Lanes lanes;
-  gather(leaves, pyramid, lanes);
-  rotate(reflectance.reflection, lanes);
-  pyramid.place(lanes.places, lanes.count);
-  Quadrants four;
-  for (std::size_t first = 0; first < leaves.size(); first += 4) {
-    const std::size_t count = std::min<std::size_t>(4, leaves.size() - first);
-    look_up(reflectance, lanes, first, four);
-    Float4 area = {};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const ProductLeaf& leaf = leaves[std::min(first + i, leaves.size() - 1)];
-      four.light[i] = leaf.light;
-      area[i] = splittable_area(pyramid, leaf.level);
-    }
-    weigh(floor, area, four);
-    for (std::size_t i = 0; i < count; ++i) {
-      leaves[first + i].reflectance = four.reflectance[i];
-      density[first + i] = four.density[i];
-      error[first + i] = four.error[i];
-    }
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    look_up(reflectance, lanes, 4 * i, quadrants[i]);
+    combine(floor, splittable_area(pyramid, squares[i].level + 1), quadrants[i]);
   }
 }
 

@@ -13,28 +13,25 @@ namespace haarlight::wavelet::detail {
 /// radians, and reach that much below the horizon.
 inline constexpr float kept_shift = 0.05F;
 
-/// The four quadrants q = qx + 2 qy of a family.
+/// The four quadrants q = qx + 2 qy of a square.
 struct Quadrants {
-  unsigned visible = 0; ///< bit q: some of it lies above the horizon, or little below
-  std::array<std::uint32_t, 4> children; ///< nodes of the light tree, or no_node
-  Float4 density = {};                   ///< the product's average weight; 0 below the horizon
-  Float4 error = {}; ///< what each leaves of the product's variance if it stays a leaf
-  std::array<Float4, 4> light;
+  std::array<Float4, 4> light;       ///< averages, lanes R, G, B, 0
   std::array<Float4, 4> reflectance; ///< lanes R, G, B; 0 below the horizon
+  unsigned visible = 0;              ///< bit q: some of it lies above the horizon, or little below
+  Float4 density = {};               ///< the product's average weight; 0 below the horizon
+  Float4 slope_x = {};               ///< of the density, as far as reflectance makes it
+  Float4 slope_y = {};
+  Float4 drift = {}; ///< density times the slopes' squares
+  Float4 error = {}; ///< what each leaves of the product's variance if it stays a leaf
 };
 
-/// Families that are worked on together.
-inline constexpr std::size_t family_batch = 16;
+/// Squares that are worked on together.
+inline constexpr std::size_t square_batch = 16;
 
-/// @param families at most family_batch
-/// @param floor    of the reflectance, lanes R, G, B
-void weigh_families(const TreeView& light, const RotatedReflectance& reflectance, Float4 floor,
-                    std::span<const Family> families, Quadrants* out);
-
-/// Weighs leaves under another reflectance: sets theirs, and what weigh_families() calls density
-/// and error.
-/// @param leaves at most 4 · family_batch
-void weigh_leaves(const RotatedReflectance& reflectance, Float4 floor,
-                  std::span<ProductLeaf> leaves, float* density, float* error);
+/// Works out all of the quadrants' numbers but their light, which is given.
+/// @param floor   of the reflectance, lanes R, G, B
+/// @param squares at most square_batch; as many quadrants
+void weigh(const RotatedReflectance& reflectance, Float4 floor, std::span<const Square> squares,
+           Quadrants* quadrants);
 
 } // namespace haarlight::wavelet::detail

@@ -8,8 +8,12 @@ Rgb ProductTree::integral() const {
   if (m_integral)
     return *m_integral;
   Float4 sum = {};
-  for (const ProductLeaf& leaf : m_leaves)
-    sum += leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
+  for (const ProductNode& node : m_nodes)
+    for (const std::int32_t child : node.child)
+      if (child < 0) {
+        const ProductLeaf& leaf = m_leaves[static_cast<std::uint32_t>(~child)];
+        sum += leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
+      }
   return to_rgb(sum);
 }
 
@@ -26,7 +30,6 @@ ProductLeaf ProductTree::leaf_at_slot(std::int32_t slot) const {
       leaf.reflectance *= m_slots[f].means[i];
   leaf.light = m_slots[rest].means[i];
   leaf.node = m_slots[rest].details[i];
-  leaf.slot = slot;
   leaf.rest = static_cast<std::uint8_t>(rest);
   return leaf;
 }

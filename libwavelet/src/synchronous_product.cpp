@@ -42,7 +42,6 @@ const ProductTree& SynchronousProduct::build(std::span<const Factor* const> fact
     slots.details.resize(4 * m_node_count);
   }
   m_product.m_nodes.resize(m_node_count);
-  m_product.m_leaf_count = 3 * m_node_count + 1;
   m_product.m_integral = to_rgb(m_integral);
   m_product.sum_upwards(m_parent_slots);
   return m_product;

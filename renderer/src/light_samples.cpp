@@ -4,10 +4,19 @@
 
 namespace haarlight::renderer {
 
+namespace {
+
+std::size_t samples_of(const RenderOptions& options) {
+  return static_cast<std::size_t>(options.spp);
+}
+
+} // namespace
+
 LightSamples::LightSamples(const LoadedScene& scene, const RenderOptions& options,
                            const RenderFactories& factories)
-    : m_scene(scene), m_options(options), m_sampler(factories.sampler->make()),
-      m_integrator(factories.integrator ? factories.integrator->make() : nullptr),
+    : m_scene(scene), m_options(options), m_sampler(factories.sampler->make(samples_of(options))),
+      m_integrator(factories.integrator ? factories.integrator->make(samples_of(options))
+                                        : nullptr),
       m_occlusion(scene) {}
 
 void LightSamples::forget() {

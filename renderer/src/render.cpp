@@ -35,11 +35,18 @@ private:
   LightSamples m_light;
 };
 
+/// What products are refined to where their own integral makes the picture, which then has no noise
+/// but this error.
+constexpr float integral_variance_bound = 0.005F;
+
 SamplerOptions sampling_of(const RenderOptions& options) {
   SamplerOptions result = options.sampling;
   result.count = static_cast<std::size_t>(options.spp);
-  if (needs_unshadowed(options.estimator)) // whose product has to be each point's own
-    result.product.drift_bound = 0;
+  if (!needs_unshadowed(options.estimator))
+    return result;
+  result.product.drift_bound = 0; // each point has to have its own
+  if (result.product.variance_bound == 0)
+    result.product.variance_bound = integral_variance_bound;
   return result;
 }
 

@@ -22,7 +22,7 @@ TEST_CASE("the product's own integral is close to the truth") {
     const SceneDescription description = fixture().scene(material, "studio");
     const LoadedScene scene(description, {}, SamplerKind::Product, false);
     const auto factory = make_sampler_factory(SamplerKind::Product, scene, {});
-    const auto sampler = factory->make();
+    const auto sampler = factory->make(16);
     const probe::Probe source = probe_of(description);
     double truth = 0;
     double product = 0;
@@ -67,7 +67,7 @@ TEST_CASE("a product that thinks half of the light hidden is unbiased all the sa
   const SceneDescription description = fixture().scene("glossy", "studio");
   const LoadedScene scene(description, {}, SamplerKind::Product, false);
   const auto factory = make_sampler_factory(SamplerKind::Product, scene, {});
-  const auto sampler = factory->make();
+  const auto sampler = factory->make(16);
   const probe::Probe source = probe_of(description);
   std::uint32_t key = 77;
   for (ShadingPoint point : shading_points()) {

@@ -96,7 +96,7 @@ TEST_CASE("every material can be factorised") {
   grey.lambert = Rgb::Zero();
   scene.materials = {grey};
   const LoadedScene black(scene, {}, SamplerKind::Factored, false);
-  const auto sampler = make_sampler_factory(SamplerKind::Factored, black, {})->make();
+  const auto sampler = make_sampler_factory(SamplerKind::Factored, black, {})->make(16);
   sampler->prepare(shading_points()[0], black.materials()[0]);
   std::vector<DirectionSample> samples(1000);
   sampler->sample({Points::Random, 1, 0}, samples);

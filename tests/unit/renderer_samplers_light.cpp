@@ -34,7 +34,7 @@ struct Lamps {
       : scene(description, {}, kind, false), samples(count), radiance(count), energy(count) {
     SamplerOptions options;
     options.count = count;
-    const auto sampler = make_sampler_factory(kind, scene, options)->make();
+    const auto sampler = make_sampler_factory(kind, scene, options)->make(16);
     sampler->prepare(shading_points()[0], scene.materials()[0]);
     sampler->sample({Points::Sobol, 1, 0}, samples);
     std::vector<Vec3> directions;
@@ -94,8 +94,8 @@ TEST_CASE("the alias table draws what its pdf says") { check_densities(alias_kin
 TEST_CASE("the alias table and the cdf draw with one density") {
   const SceneDescription description = fixture().scene("rough", "studio");
   const LoadedScene scene(description, {}, SamplerKind::Alias, false);
-  const auto alias = make_sampler_factory(SamplerKind::Alias, scene, {})->make();
-  const auto cdf = make_sampler_factory(SamplerKind::Light, scene, {})->make();
+  const auto alias = make_sampler_factory(SamplerKind::Alias, scene, {})->make(16);
+  const auto cdf = make_sampler_factory(SamplerKind::Light, scene, {})->make(16);
   std::vector<DirectionSample> samples(1000);
   alias->sample({Points::Sobol, 3, 0}, samples);
   std::size_t different = 0;
@@ -250,8 +250,8 @@ TEST_CASE("more lamps of the tiling take in the fewer, all of one energy") {
 TEST_CASE("lamps are the same at every point, and of any count at any time") {
   const LoadedScene scene(fixture().scene("rough", "studio"), {}, SamplerKind::KolligKeller, false);
   const auto factory = make_sampler_factory(SamplerKind::KolligKeller, scene, {});
-  const auto one = factory->make();
-  const auto other = factory->make();
+  const auto one = factory->make(16);
+  const auto other = factory->make(16);
   for (const std::size_t count : {16U, 4U, 16U}) {
     std::vector<DirectionSample> a(count);
     std::vector<DirectionSample> b(count);

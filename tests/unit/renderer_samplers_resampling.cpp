@@ -73,7 +73,7 @@ std::vector<double> deviations(SamplerKind sampler_kind, const char* material, P
   const SceneDescription description = fixture().scene(material, "studio");
   const probe::Probe source = probe_of(description);
   const LoadedScene scene(description, {}, sampler_kind, false);
-  const auto sampler = make_sampler_factory(sampler_kind, scene, {})->make();
+  const auto sampler = make_sampler_factory(sampler_kind, scene, {})->make(16);
   std::vector<double> result;
   std::uint32_t key = 1;
   for (const ShadingPoint& point : shading_points()) {
@@ -95,7 +95,7 @@ std::unique_ptr<Sampler> sampler_of(SamplerKind kind, const LoadedScene& scene,
                                     const ShadingPoint& point, int candidates = 16) {
   SamplerOptions options;
   options.candidates = candidates;
-  auto sampler = make_sampler_factory(kind, scene, options)->make();
+  auto sampler = make_sampler_factory(kind, scene, options)->make(16);
   sampler->prepare(point, scene.materials()[0]);
   return sampler;
 }

@@ -14,7 +14,7 @@ double relative_variance(SamplerKind kind, const char* material, int regions) {
   const LoadedScene scene(description, {}, kind, false);
   SamplerOptions options;
   options.regions = regions;
-  const auto sampler = make_sampler_factory(kind, scene, options)->make();
+  const auto sampler = make_sampler_factory(kind, scene, options)->make(16);
   double sum = 0;
   for (const ShadingPoint& point : shading_points()) {
     sampler->prepare(point, scene.materials()[0]);
@@ -48,7 +48,7 @@ TEST_CASE("two-stage sampling comes closer to the product with more regions") {
 
 TEST_CASE("two-stage sampling counts each sample with its pdf") {
   const LoadedScene scene(fixture().scene("glossy", "studio"), {}, SamplerKind::TwoStage, false);
-  const auto sampler = make_sampler_factory(SamplerKind::TwoStage, scene, {})->make();
+  const auto sampler = make_sampler_factory(SamplerKind::TwoStage, scene, {})->make(16);
   sampler->prepare(shading_points()[1], scene.materials()[0]);
   std::vector<DirectionSample> samples(10000);
   sampler->sample({Points::Random, 1, 0}, samples);
@@ -64,7 +64,7 @@ TEST_CASE("two-stage sampling draws from a light that is a tree alone") {
   description.light.probe.clear();
   const LoadedScene scene(description, {}, SamplerKind::TwoStage, false);
   const ShadingPoint point = shading_points()[0];
-  const auto sampler = make_sampler_factory(SamplerKind::TwoStage, scene, {})->make();
+  const auto sampler = make_sampler_factory(SamplerKind::TwoStage, scene, {})->make(16);
   sampler->prepare(point, scene.materials()[0]);
   double truth = 0;
   constexpr int side = 512;

@@ -81,7 +81,7 @@ TEST_CASE("pps is unbiased however few values it begins with") {
   for (const int values : {1, 3, 256}) {
     SamplerOptions options;
     options.pps_samples = values;
-    const auto sampler = make_sampler_factory(SamplerKind::Pps, scene, options)->make();
+    const auto sampler = make_sampler_factory(SamplerKind::Pps, scene, options)->make(16);
     for (const ShadingPoint& point : shading_points()) {
       sampler->prepare(point, scene.materials()[0]);
       const double truth = quadrature(scene, point, source);
@@ -98,8 +98,8 @@ TEST_CASE("wais multiplies the same entries as product-table") {
   // The fixture's materials are grey, so that the product of luminances is the product's luminance.
   const SceneDescription description = fixture().scene("rough", "studio");
   const LoadedScene scene(description, {}, SamplerKind::ProductTable, false);
-  const auto wais = make_sampler_factory(SamplerKind::Wais, scene, {})->make();
-  const auto table = make_sampler_factory(SamplerKind::ProductTable, scene, {})->make();
+  const auto wais = make_sampler_factory(SamplerKind::Wais, scene, {})->make(16);
+  const auto table = make_sampler_factory(SamplerKind::ProductTable, scene, {})->make(16);
   const probe::Probe source = probe_of(description);
   for (const ShadingPoint& point : shading_points()) {
     wais->prepare(point, scene.materials()[0]);
@@ -116,7 +116,7 @@ TEST_CASE("wais multiplies the same entries as product-table") {
 TEST_CASE("wais loses what thresholding leaves without density, and nothing else") {
   const L2Tables tables("glossy", "studio", 0.2);
   const LoadedScene scene(tables.scene(), {}, SamplerKind::Wais, false);
-  const auto sampler = make_sampler_factory(SamplerKind::Wais, scene, {})->make();
+  const auto sampler = make_sampler_factory(SamplerKind::Wais, scene, {})->make(16);
   const probe::Probe source = probe_of(tables.scene());
   double lost = 0;
   std::uint32_t key = 1;

@@ -54,7 +54,7 @@ inline int count_strays(const SceneDescription& description, SamplerKind kind,
   const probe::Probe source = probe_of(description);
   const LoadedScene scene(description, {}, kind, false);
   const auto factory = make_sampler_factory(kind, scene, {});
-  const auto sampler = factory->make();
+  const auto sampler = factory->make(16);
   int strays = 0;
   for (const ShadingPoint& point : shading_points()) {
     sampler->prepare(point, scene.materials()[0]);
@@ -91,7 +91,7 @@ inline void check_density(const SceneDescription& description, SamplerKind kind,
                           const std::string& what, std::uint32_t key) {
   const LoadedScene scene(description, {}, kind, false);
   const auto factory = make_sampler_factory(kind, scene, {});
-  const auto sampler = factory->make();
+  const auto sampler = factory->make(16);
   sampler->prepare(shading_points()[3], scene.materials()[0]);
   constexpr int count = 100000;
   std::vector<DirectionSample> samples(count);

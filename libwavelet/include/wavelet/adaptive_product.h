@@ -24,7 +24,7 @@ struct AdaptiveOptions {
   float variance_bound = 0.03F;
   int max_leaves = 4096;
   /// Relative variance, by estimate, that follow() may add by keeping a product as it is.
-  float drift_bound = 0.004F;
+  float drift_bound = 0.01F;
 };
 
 /// What stands between a point and the light.
@@ -46,13 +46,15 @@ struct LeafShare {
   bool tested = false;
 };
 
-/// A square about to be replaced by its four quadrants.
-struct Family {
-  Float4 light; ///< average, lanes R, G, B, 0
-  std::uint32_t node;
-  std::int32_t product_node;
-  std::int32_t level;
-  std::uint16_t x, y;
+/// A square of side 2^-level, in squares of its level.
+struct Square {
+  std::int32_t level = 0;
+  std::uint16_t x = 0, y = 0;
+
+  Square quadrant(unsigned q) const {
+    return {level + 1, static_cast<std::uint16_t>(2 * x + (q & 1U)),
+            static_cast<std::uint16_t>(2 * y + (q >> 1U))};
+  }
 };
 
 struct Quadrants;
@@ -76,57 +78,65 @@ public:
   const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
                            const Occlusion* occlusion = nullptr);
 
-  /// The same at a point close to that of the last product. That is kept as it is while what has
-  /// changed since it was weighed is little, by how fast it changed before: its density is above 0
-  /// wherever this point's integrand is, but its integral is another point's. Else its squares are
-  /// weighed anew and refining goes on: to the same bound, in less time than build() and with
-  /// somewhat more leaves. Builds afresh if that had another pyramid, or has grown by following.
+  /// The same at a point close to that of the last product. That is kept as it is while little has
+  /// changed since it was built: its density is above 0 wherever this point's integrand is, but its
+  /// integral is another point's. Else it is built afresh.
   const ProductTree& follow(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
                             const Occlusion* occlusion = nullptr);
 
 private:
-  using Family = detail::Family;
-
   void turn_to(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
   void start();
-  float weigh_again();
-  bool serves(float squared_shift, float drift_bound) const;
+  bool serves(const RotatedReflectance& reflectance, float drift_bound) const;
+  float drift_rate() const;
+  double drift_of(std::uint32_t slot) const;
   float squared_shift(const ReflectionFrame& reflection) const;
   void refine(const AdaptiveOptions& options);
   const ProductTree& finish(const AdaptiveOptions& options, const Occlusion* occlusion);
   void mask(const AdaptiveOptions& options, const Occlusion& occlusion);
   bool hide(const Occlusion& occlusion);
   void find_candidates();
-  void keep(std::uint32_t leaf, float share);
+  void keep(std::uint32_t slot, float share);
   void unmask();
   double excess_error(const AdaptiveOptions& options) const;
   void split_above(float threshold);
-  void expand_all(float threshold);
-  void add(const Family& family, const detail::Quadrants& quadrants, float threshold);
+  void expand(std::size_t first_node, float threshold);
+  void see_light(std::size_t node, detail::Quadrants& quadrants);
+  void add_leaves(std::size_t node, const detail::Quadrants& quadrants, float threshold);
+  void set_leaf(std::uint32_t slot, const detail::Quadrants& quadrants, std::size_t q);
   float threshold(double excess) const;
-  void split(const ProductLeaf& square, Family& family);
-  std::uint32_t new_leaf();
-  std::int32_t new_node(std::int32_t slot);
+  bool has_room() const { return m_product.leaf_count() + 3 <= m_limit; }
+  void split(std::uint32_t slot);
+  void new_node(std::int32_t slot, const detail::Square& square);
+
+  std::size_t slot_count() const { return 4 * m_product.m_nodes.size(); }
+  bool is_leaf(std::uint32_t slot) const {
+    return m_product.m_nodes[slot / 4].child[slot & 3U] < 0;
+  }
+  detail::Square square(std::uint32_t slot) const {
+    return m_squares[slot / 4].quadrant(slot & 3U);
+  }
+  float area(std::uint32_t slot) const {
+    return power_of_two(-2 * (m_squares[slot / 4].level + 1));
+  }
 
   TreeView m_light;
-  std::vector<Family> m_start; ///< the same for every product
+  std::vector<ProductLeaf> m_start; ///< of the nodes that are the same for every product
   RotatedReflectance m_reflectance;
   std::size_t m_limit = 0;
-  std::vector<Family> m_families; ///< being replaced
-  std::vector<Family> m_next;     ///< to be replaced after them
-  std::vector<float> m_errors;    ///< what each leaf leaves of the variance, by estimate
-  std::vector<detail::LeafShare> m_shares;
-  std::vector<std::uint32_t> m_free;       ///< leaves no longer in use
-  bool m_masked = false;                   ///< some leaf's share is not all of it
-  std::vector<std::uint32_t> m_candidates; ///< leaves to be tested
+  std::vector<detail::Square> m_squares; ///< by node
+  std::vector<std::int32_t> m_parent_slots;
+  std::vector<float> m_errors; ///< by slot, or longer: what each leaf leaves of the variance, by
+                               ///< estimate; 0 where there is a node
+  std::vector<detail::LeafShare>
+      m_shares;          ///< by slot, or longer; of density 0 where there is a node
+  bool m_masked = false; ///< some leaf's share is not all of it
+  std::vector<std::uint32_t> m_candidates; ///< slots of leaves to be tested
   std::vector<Vec3> m_directions;
   std::vector<std::uint8_t> m_hidden;
-  std::vector<std::int32_t> m_parent_slots;
-  ProductLeaf m_split;            ///< on its way from quadrant to family
-  std::size_t m_fresh_leaves = 0; ///< of the last product that followed none
-  float m_drift_rate = 0;         ///< variance added per squared radian; below 0 if unknown
   double m_weight = 0;
   double m_error = 0;
+  double m_drift = 0; ///< of the leaves, see drift_rate()
   ProductTree m_product;
 };
 

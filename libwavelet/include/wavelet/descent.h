@@ -4,6 +4,7 @@
 // 2005, "Wavelet importance sampling").
 
 #include <wavelet/geometry.h>
+#include <wavelet/slope.h>
 #include <wavelet/tree.h>
 
 #include <algorithm>
@@ -22,8 +23,6 @@ struct Descent {
 };
 
 namespace detail {
-
-inline constexpr float below_one = 0x1.fffffep-1F;
 
 /// Chooses between two with weights `first` and `second`, not both 0; rescales u. Returns 1 for the
 /// second. Free of branches, which chance would mispredict half of the time.
@@ -76,10 +75,11 @@ struct TreeDensity {
   std::uint32_t node = no_node; ///< of the square, or no_node: uniform in it
   float mean = 0;               ///< weighted average over the square
   Float4 weights = luminance_lanes;
+  Slope slope = {}; ///< that the density has over the square beside what the tree tells
 
   /// Density over a whole tree, which must outlive it.
   static TreeDensity of(const TreeView& tree, Float4 weights = luminance_lanes) {
-    return {&tree, tree.root(), lane_sum(to_lanes(tree.mean) * weights), weights};
+    return {&tree, tree.root(), lane_sum(to_lanes(tree.mean) * weights), weights, {}};
   }
 };
 
@@ -108,11 +108,25 @@ inline Float4 quadrant_weights(Float4 means) {
 template <class Choose>
 void step_down(TreeDensity& density, Descent& d, Choose choose) {
   const Float4 means = quadrant_means(density.tree->details(density.node), density);
-  const Float4 w = quadrant_weights(means);
+  const Float4 slopes = density.slope.quadrants();
+  const Float4 w = quadrant_weights(means) * slopes;
   const unsigned q = choose(w);
   d.pdf *= quadrant_density(w, q);
+  density.slope = density.slope.in_quadrant(slopes[q]);
   density.mean = means[q];
   density.node = density.tree->child_of_existing(density.node, q);
+}
+
+/// Spreads a descent over the square where its tree ended.
+inline void spread(const TreeDensity& density, Descent& d) {
+  if (!density.slope.is_flat())
+    d.pdf *= warp(density.slope, d.u1, d.u2);
+}
+
+/// The pdf of spread() at (u, v).
+inline void follow_spread(const TreeDensity& density, float u, float v, Descent& d) {
+  if (!density.slope.is_flat())
+    d.pdf *= density.slope.at((u - d.x) / d.side, (v - d.y) / d.side);
 }
 
 } // namespace detail
@@ -121,12 +135,14 @@ void step_down(TreeDensity& density, Descent& d, Choose choose) {
 inline void descend_tree(TreeDensity density, Descent& d) {
   while (density.node != no_node)
     detail::step_down(density, d, [&](Float4 w) { return steer(d, w); });
+  detail::spread(density, d);
 }
 
 /// The pdf of descend_tree() at (u, v), which must lie in the descent's square, into d.pdf.
 inline void follow_tree(TreeDensity density, float u, float v, Descent& d) {
   while (density.node != no_node)
     detail::step_down(density, d, [&](Float4 /*w*/) { return steer_to(d, u, v); });
+  detail::follow_spread(density, u, v, d);
 }
 
 /// descend_tree() for many at once: their steps alternate, so that none waits for memory alone.

@@ -17,7 +17,7 @@
 namespace haarlight::wavelet {
 
 /// Four quadrants q = qx + 2 qy: the product's average weight over each, and what lies there: a
-/// node, or the leaf ~child.
+/// node, or a leaf, whose slot is ~child. Slots number quadrants: 4 × node + q.
 struct ProductNode {
   Float4 weights = {};
   std::int32_t child[4] = {-1, -1, -1, -1};
@@ -27,10 +27,9 @@ struct ProductNode {
 struct ProductLeaf {
   Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, *
   Float4 reflectance = {};      ///< product of the others' averages, lanes R, G, B
+  Slope slope;                  ///< of the product beside what the factor that is left tells
   std::uint32_t node = no_node; ///< in the tree of the factor that is left
-  std::int32_t slot = -1;       ///< 4 × its parent's product node + quadrant
-  std::uint16_t x = 0, y = 0;   ///< in squares of its level; adaptive products alone know these
-  std::uint8_t level = 0;       ///< likewise
+  std::uint8_t level = 0;       ///< adaptive products alone know it
   std::uint8_t rest = 0;        ///< which factor is left
 };
 static_assert(sizeof(ProductLeaf) == 48);
@@ -44,7 +43,7 @@ public:
   /// Nothing to sample: the product vanishes.
   bool empty() const { return m_nodes.empty() || !(mean() > 0); }
 
-  std::size_t leaf_count() const { return m_leaf_count; }
+  std::size_t leaf_count() const { return m_nodes.empty() ? 0 : 3 * m_nodes.size() + 1; }
 
   /// Nodes, parents before children; the first is the whole square.
   std::span<const ProductNode> nodes() const { return m_nodes; }
@@ -108,12 +107,6 @@ private:
     return weights[slot & 3];
   }
 
-  /// A leaf's share in the total.
-  float weight(const ProductLeaf& leaf) const {
-    return m_nodes[static_cast<std::uint32_t>(leaf.slot) / 4].weights[leaf.slot & 3] *
-           power_of_two(-2 * leaf.level);
-  }
-
   /// Average weight over the whole square.
   float mean() const { return 0.25F * lane_sum(m_nodes[0].weights); }
 
@@ -125,14 +118,14 @@ private:
   TreeDensity density(const ProductLeaf& l) const {
     const Rest& rest = m_rests[l.rest];
     const Float4 weights = larger(l.reflectance, rest.floor) * luminance_lanes;
-    return {&rest.tree, l.node, lane_sum(l.light * weights), weights};
+    return {&rest.tree, l.node, lane_sum(l.light * weights), weights, l.slope};
   }
 
   std::vector<Rest> m_rests;
   std::vector<ProductNode> m_nodes;
-  std::vector<ProductLeaf> m_leaves; ///< empty if the leaf ~child lies at the slot ~child
-  std::vector<Slots> m_slots;        ///< by factor, then by 4 × node + quadrant
-  std::size_t m_leaf_count = 0;
+  std::vector<ProductLeaf>
+      m_leaves;                  ///< by slot, or longer; empty if they are to be made of m_slots
+  std::vector<Slots> m_slots;    ///< by factor, then by slot
   std::optional<Rgb> m_integral; ///< if it is known already
 };
 

@@ -33,12 +33,6 @@ std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator);
 /// Whether an estimator needs L_ns from a product even if the sampler has none.
 inline bool needs_unshadowed(Estimator estimator) { return estimator != Estimator::Unbiased; }
 
-/// What products are refined to by default: further where their own integral makes the picture,
-/// which then has no noise but this error.
-inline float default_variance_bound(Estimator estimator) {
-  return needs_unshadowed(estimator) ? 0.005F : wavelet::AdaptiveOptions().variance_bound;
-}
-
 struct RenderOptions {
   SamplerKind sampler = SamplerKind::Product;
   Estimator estimator = Estimator::Unbiased;

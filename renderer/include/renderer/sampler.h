@@ -68,7 +68,9 @@ public:
 };
 
 struct SamplerOptions {
-  wavelet::AdaptiveOptions product;
+  wavelet::AdaptiveOptions product = {.variance_bound =
+                                          0}; ///< a bound of 0 goes by the count of
+                                              ///< samples, see default_variance_bound()
   std::size_t count = 0; ///< samples that a pass is likely to ask for; what depends on the count is
                          ///< then made beforehand
   int candidates = 16;   ///< of resampling samplers for each sample, at most; above 0
@@ -76,11 +78,19 @@ struct SamplerOptions {
   int pps_samples = 128; ///< BRDF values that `pps` begins with, ≥ 1
 };
 
+/// What products are refined to by default. The variance that leaves add falls as their number n
+/// rises, like k/n, beside a part v that stays. With the time of N samples as that of r·N leaves,
+/// (v + k/n)(r·N + n) is least at k/n = √(k·v/(r·N)): the bound goes by 1/√N.
+/// @param count samples that are drawn from one product, > 0
+float default_variance_bound(std::size_t count);
+
 /// What the samplers of all threads share, made once for a scene; makes each thread's own.
 class SamplerFactory {
 public:
   virtual ~SamplerFactory() = default;
-  virtual std::unique_ptr<Sampler> make() const = 0;
+
+  /// @param count samples that each point is likely to be asked for, > 0
+  virtual std::unique_ptr<Sampler> make(std::size_t count) const = 0;
 };
 
 /// @param scene loaded for this kind; must outlive the factory and its samplers

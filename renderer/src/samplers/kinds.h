@@ -14,7 +14,7 @@ public:
   using Make = std::function<std::unique_ptr<Sampler>()>;
 
   explicit SimpleFactory(Make make) : m_make(std::move(make)) {}
-  std::unique_ptr<Sampler> make() const override { return m_make(); }
+  std::unique_ptr<Sampler> make(std::size_t /*count*/) const override { return m_make(); }
 
 private:
   Make m_make;

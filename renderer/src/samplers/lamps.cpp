@@ -88,7 +88,9 @@ public:
       m_book->of(count);
   }
 
-  std::unique_ptr<Sampler> make() const override { return std::make_unique<LampSampler>(m_book); }
+  std::unique_ptr<Sampler> make(std::size_t /*count*/) const override {
+    return std::make_unique<LampSampler>(m_book);
+  }
 
 private:
   std::shared_ptr<const LampBook> m_book; ///< samplers keep it too, and may outlive the factory

@@ -9,6 +9,9 @@
 
 #include <wavelet/adaptive_product.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace haarlight::renderer {
 namespace {
 
@@ -71,11 +74,32 @@ private:
   std::vector<probe::LightSample> m_samples;
 };
 
+class ProductFactory : public SamplerFactory {
+public:
+  ProductFactory(const Light& light, const wavelet::AdaptiveOptions& options)
+      : m_light(light), m_options(options) {}
+
+  std::unique_ptr<Sampler> make(std::size_t count) const override {
+    wavelet::AdaptiveOptions options = m_options;
+    if (options.variance_bound == 0)
+      options.variance_bound = default_variance_bound(count);
+    return std::make_unique<ProductSampler>(m_light, options);
+  }
+
+private:
+  const Light& m_light;
+  wavelet::AdaptiveOptions m_options;
+};
+
 } // namespace
+
+float default_variance_bound(std::size_t count) {
+  return std::clamp(0.12F / std::sqrt(static_cast<float>(count)), 0.002F, 0.1F);
+}
 
 std::unique_ptr<SamplerFactory> make_product_factory(const LoadedScene& scene,
                                                      const SamplerOptions& options) {
-  return simple_factory<ProductSampler>(std::cref(scene.light()), options.product);
+  return std::make_unique<ProductFactory>(scene.light(), options.product);
 }
 
 } // namespace haarlight::renderer
