@@ -13,14 +13,18 @@ void declare_integrator(Tool& app, IntegratorOptions& options) {
             "Of path: surface points on a path that are lit, at most; 1 = direct light only, 0 = "
             "as many as there are",
             0, 1 << 20);
+  app.value(options.path.light_samples, "--light-samples",
+            "Of path: samples of light at the first of these points, for each of --spp paths", 1,
+            1 << 10);
 }
 
 void check_integrator(const Tool& app, const IntegratorOptions& options,
                       const RenderOptions& render) {
   if (options.kind == Integrator::Path && needs_unshadowed(render.estimator))
     throw UsageError("--integrator path: goes with --estimator unbiased alone");
-  if (options.kind != Integrator::Path && app.given("--depth"))
-    throw UsageError("--depth: is of --integrator path");
+  for (const char* own : {"--depth", "--light-samples"})
+    if (options.kind != Integrator::Path && app.given(own))
+      throw UsageError(std::string(own).append(": is of --integrator path"));
 }
 
 unsigned needs_of(const IntegratorOptions& options) {
@@ -29,7 +33,9 @@ unsigned needs_of(const IntegratorOptions& options) {
 
 std::vector<std::pair<std::string, std::string>> texts_of(const IntegratorOptions& options) {
   if (options.kind == Integrator::Path)
-    return {{"integrator", "path"}, {"depth", std::to_string(options.path.depth)}};
+    return {{"integrator", "path"},
+            {"depth", std::to_string(options.path.depth)},
+            {"light samples", std::to_string(options.path.light_samples)}};
   return {{"integrator", "direct"}};
 }
 
