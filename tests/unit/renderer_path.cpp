@@ -258,7 +258,7 @@ TEST_CASE("paths find what brute force finds") {
       const Mean truth = BruteForce(loaded, depth).film_mean(8, 2000);
       CHECK(truth.error < 0.01 * truth.value);
       for (const SamplerKind sampler : {SamplerKind::Mis, SamplerKind::Product}) {
-        const Mean mean = path_mean(loaded, {depth}, sampler, 256, 8);
+        const Mean mean = path_mean(loaded, {depth, 2}, sampler, 128, 8);
         INFO(&scene - scenes << ", depth " << depth << ", " << sampler_name(sampler) << ": "
                              << mean.value << " ± " << mean.error << " for " << truth.value << " ± "
                              << truth.error);

@@ -1,10 +1,10 @@
 #pragma once
 // Global illumination by path tracing: L = L_e + L_dir + L_ind, the paper's eqs. 1–2.
 //
-// One path starts at a pixel's point for each sample. At its first vertex the distant light is
-// sampled by the chosen sampler, prepared once for all samples of the pixel. With
+// One path starts at a pixel's point for each of RenderOptions::spp. At its first vertex the
+// distant light is sampled by the chosen sampler, prepared once for all paths of the pixel. With
 // SamplerKind::Mis, and at every later vertex, which has but one sample, it is sampled by itself
-// instead and by the direction the path goes on in. Emitters (spheres that stay spheres, disks,
+// instead and by directions the path may go on in. Emitters (spheres that stay spheres, disks,
 // boxes) are sampled as well as met by the path; whatever two techniques can find counts by the
 // balance heuristic (Veach and Guibas 1995). Paths go on by the reflectance, from the third vertex
 // on by Russian roulette. With a sampler that is unbiased the result is.
@@ -16,6 +16,7 @@ namespace haarlight::renderer {
 struct PathOptions {
   int depth = 0; ///< surface points on a path that are lit, at most; 1 = direct light only, 0 = any
                  ///< number
+  int light_samples = 1; ///< samples of light at the first vertex for each path, above 0
 };
 
 /// What the scene must be loaded with for paths, besides what the sampler needs: of SamplerNeed.

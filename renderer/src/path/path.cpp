@@ -20,10 +20,15 @@ class PathShader : public PixelShader {
 public:
   PathShader(const LoadedScene& scene, const RenderOptions& options, const PathOptions& path,
              const RenderFactories& factories, const Emitters& emitters)
-      : m_scene(scene), m_options(options), m_only_light(path.depth == 1 && !shines(scene)),
+      : m_scene(scene), m_options(options), m_path(path), m_shines(shines(scene)),
         m_vertex(scene, emitters), m_tracer(scene, emitters, path) {
-    if (options.sampler != SamplerKind::Mis)
-      m_light.emplace(scene, m_options, factories);
+    m_counts.lights = path.light_samples;
+    if (options.sampler == SamplerKind::Mis) {
+      m_counts.departures = path.light_samples;
+      return;
+    }
+    m_counts.shares_distant = false;
+    m_light.emplace(scene, m_options, factories);
   }
 
   void forget() override {
@@ -34,19 +39,20 @@ public:
   void shade(const PixelHit& seen, const Pass& pass, PixelSums& sums) override {
     const PathPoints points = {m_options.points, hash_words(seen.pixel, m_options.seed)};
     m_values.assign(pass.count, Rgb::Zero());
-    m_vertex.arrive(seen.hit, seen.wo);
+    m_pdfs.assign(pass.count, 0);
+    m_vertex.arrive(seen.hit, seen.wo, m_counts);
     add_light(seen, pass, points);
     m_vertex.add_emitters(points.at(1, pass.first), m_values);
     if (goes_on(seen.hit.object))
-      add_departures(seen.hit, pass, points);
+      add_departures(pass, points);
     for (std::size_t i = 0; i < pass.count; ++i)
-      sums.add(m_values[i], true, m_light ? m_light->pdf(i) : 0.0F);
+      sums.add(m_values[i], true, m_pdfs[i]);
   }
 
 private:
   /// Whether departures find anything that has not been counted already.
   bool goes_on(int object) const {
-    return !m_light || (!m_only_light && m_scene.shapes().may_occlude(object));
+    return !m_light || ((m_path.depth != 1 || m_shines) && m_scene.shapes().may_occlude(object));
   }
 
   void add_light(const PixelHit& seen, const Pass& pass, const PathPoints& points) {
@@ -55,29 +61,43 @@ private:
       ++m_cost.points;
       return;
     }
+    const auto each = static_cast<std::uint32_t>(m_counts.lights);
     m_light->prepare(seen, m_cost);
-    m_light->sample(pass);
-    for (std::size_t i = 0; i < pass.count; ++i)
+    m_light->sample({pass.first * each, pass.count * each});
+    for (std::size_t i = 0; i < m_values.size() * each; ++i) {
+      m_pdfs[i / each] += m_light->pdf(i) / static_cast<float>(each);
       if (m_light->visible(i))
-        m_values[i] += m_light->weight(i);
+        m_values[i / each] += m_light->weight(i) / static_cast<float>(each);
+    }
   }
 
-  void add_departures(const Hit& from, const Pass& pass, const PathPoints& points) {
-    m_departures.resize(pass.count);
+  /// All departures look for light; one of each path's goes on.
+  void add_departures(const Pass& pass, const PathPoints& points) {
+    const auto each = static_cast<std::size_t>(m_counts.departures);
+    m_departures.resize(pass.count * each);
     m_vertex.depart(points.at(1, pass.first), m_departures);
-    for (std::size_t i = 0; i < pass.count; ++i) {
-      const std::uint32_t path = pass.first + static_cast<std::uint32_t>(i);
-      m_values[i] += m_tracer.follow(from, m_departures[i], points, path, !m_light);
+    for (std::size_t i = 0; i < m_departures.size(); ++i) {
+      const Departure& departure = m_departures[i];
+      if (!(departure.weight > 0).any())
+        continue;
+      const Found found = m_vertex.look(departure);
+      m_values[i / each] += departure.weight * found.light / static_cast<float>(each);
+      if (i % each == 0 && found.hit)
+        m_values[i / each] += m_tracer.follow(*found.hit, departure, points,
+                                              pass.first + static_cast<std::uint32_t>(i / each));
     }
   }
 
   const LoadedScene& m_scene;
   const RenderOptions& m_options;
-  bool m_only_light;
+  PathOptions m_path;
+  bool m_shines;
+  VertexCounts m_counts;               ///< of the first vertex
   std::optional<LightSamples> m_light; ///< none: by the first vertex itself
   PathVertex m_vertex;                 ///< the first
   PathTracer m_tracer;
   std::vector<Rgb> m_values; ///< radiance by path
+  std::vector<float> m_pdfs; ///< mean of its light samples'
   std::vector<Departure> m_departures;
 };
 
@@ -98,7 +118,9 @@ RenderResult render_paths(const LoadedScene& scene, const RenderFactories& facto
 RenderResult render_paths(const LoadedScene& scene, const RenderOptions& options,
                           const PathOptions& path, int width, int height,
                           const RenderProgress& progress) {
-  return render_paths(scene, RenderFactories(scene, options), options, path, width, height,
+  RenderOptions counted = options; // samplers are told how many light samples to expect
+  counted.spp *= path.light_samples;
+  return render_paths(scene, RenderFactories(scene, counted), options, path, width, height,
                       progress);
 }
 

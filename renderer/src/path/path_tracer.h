@@ -22,19 +22,18 @@ struct PathPoints {
 class PathTracer {
 public:
   PathTracer(const LoadedScene& scene, const Emitters& emitters, const PathOptions& options)
-      : m_scene(scene), m_options(options), m_vertex(scene, emitters) {}
+      : m_options(options), m_vertex(scene, emitters) {}
 
-  /// The light that comes back along a departure from the first vertex, times its weight.
-  /// @param points  of the pixel
-  /// @param path    the path's index among the pixel's
-  /// @param lights  whether the distant light seen from the first vertex counts, by balance
-  Rgb follow(const Hit& first, Departure departure, const PathPoints& points, std::uint32_t path,
-             bool lights);
+  /// The light that comes back from a path's second vertex, times its weight so far.
+  /// @param at        the second vertex
+  /// @param departure that led there
+  /// @param points    of the pixel
+  /// @param path      the path's index among the pixel's
+  Rgb follow(Hit at, Departure departure, const PathPoints& points, std::uint32_t path);
 
 private:
   bool survives(int vertex, const VertexPoints& points, Rgb& throughput) const;
 
-  const LoadedScene& m_scene;
   PathOptions m_options;
   PathVertex m_vertex;
 };

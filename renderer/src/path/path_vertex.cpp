@@ -8,8 +8,9 @@ enum Dimension : std::uint32_t { OfLight, OfLobe, OfEmitter, OfChoice };
 
 } // namespace
 
-void PathVertex::arrive(const Hit& hit, const Vec3& wo) {
+void PathVertex::arrive(const Hit& hit, const Vec3& wo, const VertexCounts& counts) {
   const Light& light = m_scene.light();
+  m_counts = counts;
   m_hit = hit;
   m_point = shading_point(light.to_light(hit.normal), light.to_light(wo));
   m_material = &m_scene.material_of(hit.object);
@@ -27,35 +28,39 @@ void PathVertex::evaluate(std::span<const DirectionSample> samples) {
 
 void PathVertex::add_light(const VertexPoints& points, std::span<Rgb> sums) {
   const Light& light = m_scene.light();
-  m_points.resize(sums.size());
-  points.fill(OfLight, m_points);
-  m_lights.resize(sums.size());
+  const std::size_t each = static_cast<std::size_t>(m_counts.lights);
+  const std::size_t count = each * sums.size();
+  m_points.resize(count);
+  points.fill(OfLight, m_counts.lights, m_points);
+  m_lights.resize(count);
   light.sample(m_points, m_lights);
-  m_samples.resize(sums.size());
-  for (std::size_t i = 0; i < sums.size(); ++i)
+  m_samples.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
     m_samples[i].direction = m_lights[i].direction;
   evaluate(m_samples);
   m_lobe.pdfs(m_samples);
-  m_radiance.resize(sums.size());
+  m_radiance.resize(count);
   light.radiance(m_directions, m_radiance);
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (!(m_lights[i].pdf > 0) || !(m_reflected[i] * m_radiance[i] > 0).any())
+  for (std::size_t i = 0; i < count; ++i) {
+    const Rgb reflected = m_reflected[i] * m_radiance[i];
+    if (!(m_lights[i].pdf > 0) || !(reflected > 0).any())
       continue;
     if (!m_scene.shapes().occluded(leave(m_hit, light.to_world(m_directions[i]))))
-      sums[i] += m_reflected[i] * m_radiance[i] / (m_lights[i].pdf + m_samples[i].pdf);
+      sums[i / each] += reflected / (lights() * m_lights[i].pdf + departures() * m_samples[i].pdf);
   }
 }
 
 void PathVertex::add_emitters(const VertexPoints& points, std::span<Rgb> sums) {
   if (m_emitters.empty())
     return;
-  m_points.resize(sums.size());
-  points.fill(OfEmitter, m_points);
-  m_choices.resize(sums.size());
-  points.fill(OfChoice, m_choices);
-  for (std::size_t i = 0; i < sums.size(); ++i)
+  const std::size_t each = static_cast<std::size_t>(m_counts.lights);
+  m_points.resize(each * sums.size());
+  points.fill(OfEmitter, m_counts.lights, m_points);
+  m_choices.resize(m_points.size());
+  points.fill(OfChoice, m_counts.lights, m_choices);
+  for (std::size_t i = 0; i < m_points.size(); ++i)
     if (const auto to = m_emitters.sample(m_hit, m_choices[i].x(), m_points[i]))
-      sums[i] += emitter_sample(*to);
+      sums[i / each] += emitter_sample(*to);
 }
 
 Rgb PathVertex::emitter_sample(const EmitterDirection& to) const {
@@ -68,12 +73,12 @@ Rgb PathVertex::emitter_sample(const EmitterDirection& to) const {
     return Rgb::Zero();
   const Vec3 w = m_scene.light().to_light(to.direction);
   return m_material->evaluate(m_point, w) * m_scene.material_of(hit.object).emission() /
-         (pdf + m_lobe.pdf(w));
+         (lights() * pdf + departures() * m_lobe.pdf(w));
 }
 
 void PathVertex::depart(const VertexPoints& points, std::span<Departure> out) {
   m_points.resize(out.size());
-  points.fill(OfLobe, m_points);
+  points.fill(OfLobe, m_counts.departures, m_points);
   m_samples.resize(out.size());
   m_lobe.sample(m_points, m_samples);
   evaluate(m_samples);
@@ -84,17 +89,30 @@ void PathVertex::depart(const VertexPoints& points, std::span<Departure> out) {
   }
 }
 
+Found PathVertex::look(const Departure& departure) const {
+  Hit hit;
+  if (!m_scene.shapes().intersect(leave(m_hit, departure.direction), hit))
+    return {m_counts.shares_distant ? escaped(departure) : Rgb(Rgb::Zero()), std::nullopt};
+  Found found{met(departure, hit), hit};
+  if (hit.normal.dot(departure.direction) > 0)
+    found.hit->normal = -hit.normal;
+  return found;
+}
+
+/// The share of the distant light seen along a departure that add_light() leaves to it.
 Rgb PathVertex::escaped(const Departure& departure) const {
   const Light& light = m_scene.light();
   const Vec3 w = light.to_light(departure.direction);
-  return light.radiance(w) * balance(departure.pdf, light.pdf(w));
+  return light.radiance(w) * balance(departures() * departure.pdf, lights() * light.pdf(w));
 }
 
-Rgb PathVertex::met(const Hit& from, const Departure& departure, const Hit& hit) const {
+/// The share of what `hit` emits that add_emitters() leaves to a departure.
+Rgb PathVertex::met(const Departure& departure, const Hit& hit) const {
   const Rgb& emission = m_scene.material_of(hit.object).emission();
   if (m_emitters.empty() || !(emission > 0).any())
     return emission;
-  return emission * balance(departure.pdf, m_emitters.pdf(from, departure.direction, hit));
+  const float pdf = m_emitters.pdf(m_hit, departure.direction, hit);
+  return emission * balance(departures() * departure.pdf, lights() * pdf);
 }
 
 } // namespace haarlight::renderer

@@ -6,6 +6,7 @@
 
 #include <renderer/loaded_scene.h>
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,16 +26,32 @@ struct VertexPoints {
   std::uint32_t key = 0;   ///< of pixel, seed and vertex
   std::uint32_t first = 0; ///< index of the first path
 
-  void fill(std::uint32_t dimension, std::span<Vec2> out) const {
-    fill_shuffled_points(kind, hash_words(key, dimension), first, out);
+  /// @param each points for each path, side by side
+  void fill(std::uint32_t dimension, int each, std::span<Vec2> out) const {
+    fill_shuffled_points(kind, hash_words(key, dimension), first * static_cast<std::uint32_t>(each),
+                         out);
   }
 };
 
-/// What a technique's sample counts with where another could have found it: the balance heuristic
-/// with one sample of each.
+/// Samples that a path takes at a vertex.
+struct VertexCounts {
+  int lights = 1;             ///< of the distant light and of the emitters, each
+  int departures = 1;         ///< by the reflectance
+  bool shares_distant = true; ///< whether departures that escape count for the distant light; if
+                              ///< not, it is left to others alone
+};
+
+/// What a technique counts with where another could have found the same: the balance heuristic.
+/// @param own,other numbers of samples times density
 inline float balance(float own, float other) { return own / (own + other); }
 
-/// Turns from point to point, for any number of samples at each; one thread's.
+/// What a departure comes upon.
+struct Found {
+  Rgb light = Rgb::Zero(); ///< its share of the light straight from there
+  std::optional<Hit> hit;  ///< the surface, its normal on this side; nothing if it escapes
+};
+
+/// Turns from point to point, for any number of paths at each; one thread's.
 class PathVertex {
 public:
   PathVertex(const LoadedScene& scene, const Emitters& emitters)
@@ -42,32 +59,33 @@ public:
 
   /// @param hit its normal on the viewer's side
   /// @param wo  unit direction to the viewer, world
-  void arrive(const Hit& hit, const Vec3& wo);
+  void arrive(const Hit& hit, const Vec3& wo, const VertexCounts& counts = {});
 
-  /// Adds to each sum what one sample of the distant light by itself sends back; departures that
-  /// escape have the rest.
+  /// Adds to each path's sum what its samples of the distant light by itself send back; departures
+  /// that escape have the rest.
   void add_light(const VertexPoints& points, std::span<Rgb> sums);
 
-  /// Adds to each sum what one sample of the emitters sends back; departures that meet one have
-  /// the rest.
+  /// Adds to each path's sum what its samples of the emitters send back; departures that meet one
+  /// have the rest.
   void add_emitters(const VertexPoints& points, std::span<Rgb> sums);
 
-  /// Draws departures by the reflectance.
+  /// Draws departures by the reflectance, those of one path side by side.
   void depart(const VertexPoints& points, std::span<Departure> out);
 
-  /// The share of the distant light seen along a departure that add_light() leaves to it.
-  Rgb escaped(const Departure& departure) const;
-
-  /// The share of what `hit`, first along a departure from `from`, emits that add_emitters() leaves
-  /// to it.
-  Rgb met(const Hit& from, const Departure& departure, const Hit& hit) const;
+  /// Looks along one of the departures. Its light is to be averaged over those of a path.
+  Found look(const Departure& departure) const;
 
 private:
   void evaluate(std::span<const DirectionSample> samples);
   Rgb emitter_sample(const EmitterDirection& to) const;
+  Rgb escaped(const Departure& departure) const;
+  Rgb met(const Departure& departure, const Hit& hit) const;
+  float lights() const { return static_cast<float>(m_counts.lights); }
+  float departures() const { return static_cast<float>(m_counts.departures); }
 
   const LoadedScene& m_scene;
   const Emitters& m_emitters;
+  VertexCounts m_counts;
   Hit m_hit;
   ShadingPoint m_point;
   const Material* m_material = nullptr;
