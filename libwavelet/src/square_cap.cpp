@@ -117,7 +117,7 @@ SquareDirections square_directions(const SquarePlace& square) {
 }
 
 bool nearly_linear(const SquareValues& v) {
-  constexpr float bend_limit = 0.2F; ///< of the change from centre to edge
+  constexpr float bend_limit = 0.1F; ///< of the change from centre to edge
   const float change = std::max(std::abs(v[5] - v[3]), std::abs(v[7] - v[1]));
   const float bend = std::abs(v[3] + v[5] - 2 * v[4]) + std::abs(v[1] + v[7] - 2 * v[4]) +
                      0.25F * std::abs(v[0] + v[8] - v[2] - v[6]);

@@ -41,7 +41,7 @@ SquareDirections square_directions(const SquarePlace& square);
 /// @param value Float4(Float4 x, Float4 y, Float4 z) of four unit directions
 template <class Value>
 float positive_share_of(const SquarePlace& square, const Value& value) {
-  constexpr std::int32_t coarsest = 2; ///< where no square has a seam of the map inside it but one
+  constexpr std::int32_t coarsest = 5; ///< coarser ones may bend or hold a seam of the map
   constexpr std::int32_t finest = 14;
   const SquareDirections at = square_directions(square);
   SquareValues values;

@@ -30,6 +30,8 @@ RegionPart Cap::classify(const SquareCap& bounds) const {
   const float along = axis.dot(bounds.centre);
   const float even = cosine * bounds.cosine;
   const float odd = sine * bounds.sine;
+  if (chord_squared >= 4)
+    return RegionPart::Inside;
   if (cosine <= bounds.cosine && along >= even + odd)
     return RegionPart::Inside;
   if (cosine >= -bounds.cosine && along <= even - odd)
