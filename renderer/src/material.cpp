@@ -32,6 +32,8 @@ std::unique_ptr<Reflectance> make_truth(const MaterialDescription& description, 
     return measured_reflectance(brdf::MeasuredBrdf(description.brdf, lookup));
   if (lobes)
     return tree_reflectance(lobes);
+  if (description.table.empty())
+    return lambert_reflectance(Rgb::Zero());
   throw_input_error(description.table, "is all that material \"" + description.name +
                                            "\" names; it needs \"brdf\" or \"haar\" as well");
 }
@@ -39,7 +41,7 @@ std::unique_ptr<Reflectance> make_truth(const MaterialDescription& description, 
 } // namespace
 
 Material::Material(const MaterialDescription& description, brdf::Lookup lookup)
-    : m_name(description.name) {
+    : m_name(description.name), m_emission(description.emission) {
   if (!description.haar.empty())
     m_lobes = load_lobes(description.haar);
   if (!description.table.empty()) {

@@ -17,7 +17,9 @@ void PixelSums::add(const Rgb& weight, bool v, float p) {
   ++visible;
 }
 
-Rgb estimate(const PixelSums& sums, Estimator estimator) {
+namespace {
+
+Rgb estimate_reflected(const PixelSums& sums, Estimator estimator) {
   if (sums.count == 0)
     return Rgb::Zero();
   const auto n = static_cast<float>(sums.count);
@@ -30,6 +32,12 @@ Rgb estimate(const PixelSums& sums, Estimator estimator) {
     return (sums.unshadowed > 0).select(sums.product * sums.shadowed / sums.unshadowed, 0.0F);
   }
   return Rgb::Zero();
+}
+
+} // namespace
+
+Rgb estimate(const PixelSums& sums, Estimator estimator) {
+  return sums.emitted + estimate_reflected(sums, estimator);
 }
 
 double estimate_variance(const PixelSums& sums, Estimator estimator) {

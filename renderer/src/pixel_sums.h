@@ -9,6 +9,7 @@ namespace haarlight::renderer {
 struct PixelSums {
   Rgb shadowed = Rgb::Zero();   ///< Σ w v
   Rgb unshadowed = Rgb::Zero(); ///< Σ w
+  Rgb emitted = Rgb::Zero();    ///< by what is seen; adds to every estimate
   Rgb product = Rgb::Zero();    ///< L_ns of the product, as of the last pass
   double shadowed_square = 0;   ///< Σ (lum w)² v
   double square = 0;            ///< Σ (lum w)²

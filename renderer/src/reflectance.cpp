@@ -11,9 +11,17 @@
 namespace haarlight::renderer {
 namespace {
 
+/// Without highlight, so that its routine is the cosine's.
+brdf::BlinnPhong cosine_model(const Rgb& albedo) {
+  brdf::BlinnPhong model;
+  model.diffuse = albedo;
+  model.specular = Rgb::Zero();
+  return model;
+}
+
 class Lambert : public Reflectance {
 public:
-  explicit Lambert(const Rgb& albedo) : m_albedo(albedo) {}
+  explicit Lambert(const Rgb& albedo) : m_albedo(albedo), m_model(cosine_model(albedo)) {}
 
   void evaluate(const ShadingPoint& point, std::span<const Vec3> directions,
                 std::span<Rgb> out) const override {
@@ -28,8 +36,11 @@ public:
     return std::make_unique<LambertMaps>(m_albedo, 32, 16, 32);
   }
 
+  const brdf::AnalyticBrdf* model() const override { return &m_model; }
+
 private:
   Rgb m_albedo;
+  brdf::AnalyticBrdf m_model;
 };
 
 class Measured : public Reflectance {

@@ -102,7 +102,7 @@ LightDescription read_light(const SceneNode& node, const Folder& folder) {
 
 MaterialDescription read_material(const SceneNode& node, const std::string& name,
                                   const Folder& folder) {
-  Names keys = {"brdf", "haar", "table", "lambert"};
+  Names keys = {"brdf", "haar", "table", "lambert", "emission"};
   const Names models = model_names();
   keys.insert(keys.end(), models.begin(), models.end());
   node.allow(keys);
@@ -114,10 +114,13 @@ MaterialDescription read_material(const SceneNode& node, const std::string& name
   if (const auto lambert = node.find("lambert"))
     material.lambert = read_albedo(*lambert);
   material.model = read_model(node);
+  if (const auto emission = node.find("emission"))
+    material.emission = read_emission(*emission);
   if (node.keys().empty())
     node.fail("needs at least one of the keys brdf, haar, table, or lambert, or a model: " +
-              joined(models));
-  if ((material.lambert || material.model) && node.keys().size() > 1)
+              joined(models) + "; or emission");
+  const std::size_t reflectances = node.keys().size() - (node.has("emission") ? 1 : 0);
+  if ((material.lambert || material.model) && reflectances > 1)
     node.fail(std::string(material.lambert ? "lambert" : "a model") +
               " stands alone, without brdf, haar, table or another model");
   return material;

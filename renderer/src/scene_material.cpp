@@ -84,6 +84,13 @@ Rgb read_albedo(const SceneNode& node) {
   return albedo;
 }
 
+Rgb read_emission(const SceneNode& node) {
+  Rgb emission = node.vector().array();
+  if ((emission < 0).any())
+    node.fail("must hold radiances, none below 0");
+  return emission;
+}
+
 Names model_names() {
   Names names;
   for (const ModelReader& reader : model_readers())

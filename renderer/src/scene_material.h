@@ -12,6 +12,9 @@ namespace haarlight::renderer::detail {
 /// Three numbers from 0 to 1.
 Rgb read_albedo(const SceneNode& node);
 
+/// Radiance: three numbers, none below 0.
+Rgb read_emission(const SceneNode& node);
+
 /// The keys of materials that name an analytic model.
 Names model_names();
 

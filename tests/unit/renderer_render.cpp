@@ -122,6 +122,25 @@ TEST_CASE("samplers agree on a scene with shadows; the estimators that assume li
   CHECK(mean_of(render_with(scene, options).film) == Approx(product).epsilon(0.05));
 }
 
+TEST_CASE("what shines is seen to, and adds to what it reflects") {
+  const TemporaryFolder folder;
+  SceneDescription scene = lambert_scene(folder, true);
+  RenderOptions options;
+  options.spp = 4;
+  const Film dark = render_with(scene, options).film;
+  scene.materials[0].emission = Rgb(1, 0, 3);
+  const Film shining = render_with(scene, options).film;
+  const std::size_t centre = dark.index(12, 12);
+  CHECK((shining.color(centre) - dark.color(centre) - Rgb(1, 0, 3)).abs().maxCoeff() < 1e-5F);
+  CHECK(shining.variance == dark.variance);
+  scene.materials[0].lambert.reset();
+  for (const SamplerKind kind : {SamplerKind::Product, SamplerKind::Brdf, SamplerKind::Mis}) {
+    options.sampler = kind;
+    const Film black = render_with(scene, options).film;
+    CHECK((black.color(centre) == Rgb(1, 0, 3)).all());
+  }
+}
+
 TEST_CASE("a Lambertian gets its table with rolls at load") {
   const TemporaryFolder folder;
   SceneDescription scene = lambert_scene(folder, true);

@@ -130,6 +130,18 @@ TEST_CASE("the light's and the camera's other keys", "[scene]") {
   CHECK(scene.camera.up == Vec3::UnitY());
 }
 
+TEST_CASE("any material may shine, also one that reflects nothing", "[scene]") {
+  const std::string floor = R"({"lambert": [0.5, 0.25, 1]})";
+  const SceneDescription both =
+      load(replaced(plain_scene, floor, R"({"lambert": [0.5, 0.25, 1], "emission": [1, 0, 2e3]})"));
+  CHECK((both.materials[0].emission == 0).all());
+  CHECK((both.materials[1].emission == Rgb(1, 0, 2e3F)).all());
+  CHECK(both.materials[1].lambert);
+  const SceneDescription alone = load(replaced(plain_scene, floor, R"({"emission": [3, 3, 3]})"));
+  CHECK((alone.materials[1].emission == 3).all());
+  CHECK_FALSE(alone.materials[1].lambert);
+}
+
 TEST_CASE("every shape is read", "[scene]") {
   const auto disk =
       object(R"({"type": "disk", "center": [1, 2, 3], "normal": [0, 0, 2], "radius": 4)");
@@ -306,7 +318,14 @@ TEST_CASE("each mistake is named with its place and the remedy", "[scene]") {
       {R"("lambert": [0.5, 0.25, 1])", R"("ggx": {}, "haar": "a")",
        R"(materials["floor"]: a model stands alone, without brdf, haar, table or another model)"},
       {R"("lambert": [0.5, 0.25, 1])", R"("ggx": {}, "ward": {})",
-       R"(materials["floor"]: a model stands alone)"}};
+       R"(materials["floor"]: a model stands alone)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("emission": [1, -1, 1])",
+       R"(materials["floor"].emission: must hold radiances, none below 0)"},
+      {R"("lambert": [0.5, 0.25, 1])", R"("emission": 5)",
+       R"(materials["floor"].emission: must be an array, is a number)"},
+      {R"("lambert": [0.5, 0.25, 1])",
+       R"("lambert": [0, 0, 0], "brdf": "a", "emission": [1, 1, 1])",
+       R"(materials["floor"]: lambert stands alone)"}};
   for (const auto& mistake : mistakes) {
     INFO(mistake.to << " instead of " << mistake.from);
     const std::string text = complaint(replaced(plain_scene, mistake.from, mistake.to));

@@ -52,11 +52,15 @@ public:
   /// The set with rolls, if there is one.
   const TreeTable* roll_table() const { return m_rolls ? &*m_rolls : nullptr; }
 
+  /// Radiance that it sends into all directions by itself.
+  const Rgb& emission() const { return m_emission; }
+
   const std::string& name() const { return m_name; }
   std::size_t pyramid_bytes() const { return m_pyramid ? m_pyramid->bytes() : 0; }
 
 private:
   std::string m_name;
+  Rgb m_emission = Rgb::Zero();
   std::shared_ptr<const TreeTable> m_lobes; ///< θ_r only
   std::optional<TreeTable> m_rolls;
   std::unique_ptr<Reflectance> m_truth;

@@ -40,7 +40,7 @@ struct LightDescription {
   bool background = true; ///< the light itself is seen where no object is; else black
 };
 
-/// At least one of the files, or `lambert` or `model` alone.
+/// At least one of the files, or `lambert` or `model` alone, or none of them: black. Any may shine.
 struct MaterialDescription {
   std::string name;
   std::string brdf;           ///< MERL file, or empty
@@ -48,6 +48,7 @@ struct MaterialDescription {
   std::string table;          ///< trees of the set with rolls, or empty
   std::optional<Rgb> lambert; ///< albedo in [0, 1]: f_r = lambert/π
   std::optional<brdf::AnalyticBrdf> model;
+  Rgb emission = Rgb::Zero(); ///< radiance into all directions, on the side it is seen from; ≥ 0
 };
 
 struct ObjectDescription {
