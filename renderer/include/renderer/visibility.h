@@ -43,6 +43,10 @@ public:
   void object(int object, const Hit& from, int levels, wavelet::RegionTreeBuilder& builder,
               wavelet::Tree& out) const;
 
+  /// Whether an object may be in the way of light above the horizon: no if all of it lies below,
+  /// or if it is the shaded one and convex.
+  bool may_hide(int object, const Hit& from) const;
+
   /// v_1 of the shaded object itself: 0 below the horizon and where the object is in its own way.
   /// For products with reflectances that hold the cosine, as this toolkit's maps do.
   wavelet::Tree own(const Hit& from, int levels) const;
@@ -56,6 +60,7 @@ public:
   wavelet::Tree local(const Hit& from, int levels) const;
 
 private:
+  bool shadows_itself(int object) const;
   void own(const Hit& from, int levels, bool cosine, wavelet::RegionTreeBuilder& builder,
            wavelet::Tree& out) const;
 

@@ -66,12 +66,25 @@ void VisibilityTrees::object(int object, const Hit& from, int levels, RegionTree
     builder.build(SolidRegion(*occluder.solid, origin, m_light), levels, out);
 }
 
+bool VisibilityTrees::shadows_itself(int object) const {
+  const Solid* solid = m_occluders[static_cast<std::size_t>(object)].solid;
+  return solid != nullptr && solid->kind == SolidKind::Torus;
+}
+
+bool VisibilityTrees::may_hide(int object, const Hit& from) const {
+  if (object == from.object)
+    return shadows_itself(object);
+  const Solid* solid = m_occluders[static_cast<std::size_t>(object)].solid;
+  return solid == nullptr ||
+         from.normal.cast<double>().dot(solid->center - origin_of(from)) > -solid->radius;
+}
+
 void VisibilityTrees::own(const Hit& from, int levels, bool cosine, RegionTreeBuilder& builder,
                           Tree& out) const {
-  const Solid* solid = m_occluders[static_cast<std::size_t>(from.object)].solid;
   std::optional<SolidRays> rays;
-  if (solid != nullptr && solid->kind == SolidKind::Torus)
-    rays.emplace(*solid, origin_of(from), m_light);
+  if (shadows_itself(from.object))
+    rays.emplace(*m_occluders[static_cast<std::size_t>(from.object)].solid, origin_of(from),
+                 m_light);
   builder.build(HorizonRegion(m_light.to_light(from.normal), rays, cosine), levels, out);
 }
 
