@@ -1,6 +1,11 @@
 #include <wavelet/masked_product.h>
 
 namespace haarlight::wavelet {
+namespace {
+
+bool is_black(Float4 c) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
+
+} // namespace
 
 std::span<const MaskedLeaf> MaskedProduct::build(const ProductTree& product,
                                                  std::span<const TreeView> masks) {
@@ -49,6 +54,8 @@ MaskedProduct::Masks MaskedProduct::quadrant(unsigned q, std::size_t splits, flo
 void MaskedProduct::visit(std::int32_t child, Masks masks) {
   if (child < 0) {
     const ProductLeaf at = m_product->leaf(child);
+    if (is_black(at.reflectance))
+      return;
     MaskedLeaf leaf;
     leaf.x = at.x;
     leaf.y = at.y;
@@ -73,7 +80,7 @@ void MaskedProduct::visit(std::int32_t child, Masks masks) {
 /// Unless nothing is left of it.
 void MaskedProduct::add_leaf(MaskedLeaf leaf, Masks masks, std::vector<MaskedLeaf>& out) {
   leaf.left = light_below(leaf.m_light, leaf.m_node, masks);
-  if (leaf.left[0] == 0 && leaf.left[1] == 0 && leaf.left[2] == 0)
+  if (is_black(leaf.left))
     return;
   leaf.m_scale = masks.scale;
   leaf.m_first_mask = static_cast<std::uint32_t>(m_leaf_masks.size());

@@ -30,7 +30,7 @@ private:
 /// detail: exact for all of these. Reused from product to product, it allocates nothing.
 class MaskedProduct {
 public:
-  /// The leaves that something is left of; valid until the next call.
+  /// The leaves that reflect something and that something is left of; valid until the next call.
   /// @param product adaptive, whose leaves know their places; must outlive the leaves, and so must
   ///                the masks
   /// @param masks   of a single channel
