@@ -1,5 +1,6 @@
 // haarrender: renders a scene lit by a probe.
 #include <render/film_output.h>
+#include <render/integrator.h>
 #include <render/render_options.h>
 #include <support/program.h>
 #include <support/progress.h>
@@ -22,11 +23,13 @@ struct Options {
   std::uint64_t seed = 0;
   SourceLookups lookups;
   RenderOptions render;
+  tool::IntegratorOptions integrator;
 };
 
 void declare(tool::Tool& app, Options& options) {
   app.input(options.scene, "SCENE.json", "Scene; renderer/SCENE.md documents the format");
   app.output(options.output, "OUT.exr", "Picture to write: R, G, B and further channels");
+  tool::declare_integrator(app, options.integrator);
   tool::declare_sampling(app, options.render);
   app.value(options.seed, "--seed", "Tells random point sets apart, below 2^32");
   app.choice(options.lookups.brdf, "--brdf-lookup",
@@ -48,6 +51,7 @@ void require_writable(const std::string& path) { const OutputFile trial(path); }
 void check(const tool::Tool& app, Options& options) {
   if (const auto problem = problem_of(options.render.sampler, options.render.estimator))
     throw tool::UsageError(*problem);
+  tool::check_integrator(app, options.integrator, options.render);
   if (options.seed > 0xFFFFFFFFU)
     throw tool::UsageError("--seed: must be below 2^32");
   if (!app.given("--product-variance"))
@@ -65,14 +69,16 @@ int render_scene(const tool::Tool& app, Options& options) {
   if (!options.size.empty())
     tool::set_film_size(options.size, description);
   const LoadedScene scene(description, options.lookups, options.render.sampler,
-                          needs_unshadowed(options.render.estimator));
+                          needs_unshadowed(options.render.estimator),
+                          tool::needs_of(options.integrator));
   if (!scene.light().note().empty())
     app.detail(scene.light().note());
   tool::ProgressBar bar(app, "rendering");
-  const RenderResult result =
-      render(scene, options.render, description.width, description.height,
-             [&](double share) { bar(static_cast<int>(1000 * share), 1000); });
-  tool::write_film_exr(options.output, result, description, options.render);
+  const RenderResult result = tool::render_by(
+      options.integrator, scene, options.render, description.width, description.height,
+      [&](double share) { bar(static_cast<int>(1000 * share), 1000); });
+  tool::write_film_exr(options.output, result, description, options.render,
+                       tool::texts_of(options.integrator));
   if (!options.png.empty())
     tool::write_film_png(options.png, result.film, options.exposure);
   app.print(tool::describe(result));

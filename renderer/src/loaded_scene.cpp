@@ -7,25 +7,26 @@
 namespace haarlight::renderer {
 
 LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookups& lookups,
-                         SamplerKind sampler, bool unshadowed_product)
+                         SamplerKind sampler, bool unshadowed_product, unsigned further)
     : m_description(description), m_light(description.light, lookups.probe) {
   for (const ObjectDescription& object : description.objects)
     m_shapes.add(object.shape, object.transform);
   m_materials.reserve(description.materials.size());
   for (const MaterialDescription& material : description.materials)
     m_materials.emplace_back(material, lookups.brdf);
+  const unsigned needed = traits(sampler).needs | further;
   const std::clock_t start = std::clock();
-  if (needs(sampler, NeedsLightDistribution))
+  if ((needed & NeedsLightDistribution) != 0)
     m_light.need_distribution();
-  if (needs(sampler, NeedsLightTree) || unshadowed_product)
+  if ((needed & NeedsLightTree) != 0 || unshadowed_product)
     m_light.need_tree();
-  if (needs(sampler, NeedsMaterialTrees) || unshadowed_product)
+  if ((needed & NeedsMaterialTrees) != 0 || unshadowed_product)
     for (Material& material : m_materials)
       material.need_trees();
-  if (needs(sampler, NeedsLobes))
+  if ((needed & NeedsLobes) != 0)
     for (Material& material : m_materials)
       material.need_lobe();
-  if (needs(sampler, NeedsTables)) {
+  if ((needed & NeedsTables) != 0) {
     for (Material& material : m_materials)
       material.need_roll_table();
     check_tables(traits(sampler).name);

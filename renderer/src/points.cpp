@@ -47,6 +47,28 @@ Vec2 random_point(std::uint32_t key, std::uint32_t index) {
   return {to_unit(a), to_unit(finalise(a + 0x9e3779b9U))};
 }
 
+/// The points of one key.
+class PointSet {
+public:
+  PointSet(Points kind, std::uint32_t key)
+      : m_kind(kind), m_key(key), m_seed_x(hash_words(key, 0x1234567U)),
+        m_seed_y(hash_words(key, 0x7654321U)) {}
+
+  Vec2 point(std::uint32_t index) const {
+    if (m_kind == Points::Random)
+      return random_point(m_key, index);
+    // The first dimension is the reversed index, so the index is the first dimension reversed.
+    return {to_unit(reverse_bits(scramble_reversed(index, m_seed_x))),
+            to_unit(reverse_bits(scramble_reversed(sobol_second_reversed(index), m_seed_y)))};
+  }
+
+private:
+  Points m_kind;
+  std::uint32_t m_key;
+  std::uint32_t m_seed_x;
+  std::uint32_t m_seed_y;
+};
+
 } // namespace
 
 std::uint32_t hash_words(std::uint32_t a, std::uint32_t b) {
@@ -54,17 +76,18 @@ std::uint32_t hash_words(std::uint32_t a, std::uint32_t b) {
 }
 
 void fill_points(Points kind, std::uint32_t key, std::uint32_t first, std::span<Vec2> out) {
-  const std::uint32_t seed_x = hash_words(key, 0x1234567U);
-  const std::uint32_t seed_y = hash_words(key, 0x7654321U);
+  const PointSet set(kind, key);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = set.point(first + static_cast<std::uint32_t>(i));
+}
+
+void fill_shuffled_points(Points kind, std::uint32_t key, std::uint32_t first,
+                          std::span<Vec2> out) {
+  const PointSet set(kind, key);
+  const std::uint32_t order = hash_words(key, 0x5f3759dU);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::uint32_t index = first + static_cast<std::uint32_t>(i);
-    if (kind == Points::Random) {
-      out[i] = random_point(key, index);
-      continue;
-    }
-    // The first dimension is the reversed index, so the index is the first dimension reversed.
-    out[i] = {to_unit(reverse_bits(scramble_reversed(index, seed_x))),
-              to_unit(reverse_bits(scramble_reversed(sobol_second_reversed(index), seed_y)))};
+    out[i] = set.point(reverse_bits(scramble_reversed(reverse_bits(index), order)));
   }
 }
 

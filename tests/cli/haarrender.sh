@@ -53,6 +53,30 @@ expect 0 haarrender scene.json -o b.exr --png b.png --size 8x6 --spp 1 --time-li
 check "b.png is a picture" "$bin/haarsheet" b.png -o sheet.png
 rm a.exr b.exr b.png sheet.png sphere.json
 
+# paths, and what shines
+sed 's/"floor": {"lambert": \[0.5, 0.5, 0.5\]/&, "emission": [0.5, 0.5, 0.5]/' scene.json >shining.json
+expect 0 haarrender scene.json -o a.exr --spp 4 --integrator path --depth 1
+for sampler in product mis; do
+  expect 0 haarrender shining.json -o a.exr --spp 4 --integrator path --sampler $sampler --threads 1
+  expect 0 haarrender shining.json -o b.exr --spp 4 --integrator path --sampler $sampler --threads 2
+  same a.exr b.exr
+done
+strings a.exr | grep -q '^integrator=path$' || fail "the picture does not say its integrator"
+expect 2 haarrender scene.json -o x.exr --depth 3
+expect 2 haarrender scene.json -o x.exr --integrator path --depth -1
+expect 2 haarrender scene.json -o x.exr --integrator path --estimator ratio
+rm a.exr b.exr shining.json
+
+# no samples at all
+expect 0 haarrender scene.json -o a.exr --integrator product-integral --resolution 32 --threads 1
+expect 0 haarrender scene.json -o b.exr --integrator product-integral --resolution 32 --threads 2
+same a.exr b.exr
+strings a.exr | grep -q '^resolution=32$' || fail "the picture does not say its resolution"
+expect 2 haarrender scene.json -o x.exr --resolution 64
+expect 2 haarrender scene.json -o x.exr --integrator product-integral --resolution 100
+expect 2 haarrender scene.json -o x.exr --integrator product-integral --spp 4
+rm a.exr b.exr
+
 # usage
 expect 2 haarrender scene.json
 expect 2 haarrender scene.json -o x.exr --sampler magic

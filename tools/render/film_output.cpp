@@ -67,7 +67,8 @@ double nanoseconds_per(double seconds, std::uint64_t count) {
 } // namespace
 
 void write_film_exr(const std::string& path, const RenderResult& result,
-                    const SceneDescription& scene, const RenderOptions& options) {
+                    const SceneDescription& scene, const RenderOptions& options,
+                    const std::vector<std::pair<std::string, std::string>>& integrator) {
   const Film& film = result.film;
   image::ExrImage exr;
   exr.width = film.width;
@@ -78,7 +79,10 @@ void write_film_exr(const std::string& path, const RenderResult& result,
                   {"pdf_sum", film.pdf_sum.data()},   {"variance", film.variance.data()},
                   {"samples", film.samples.data()}};
   const int spp = result.statistics.spp;
-  exr.texts = {{"haarlight:provenance", provenance_of(scene, options, spp).text()}};
+  Provenance provenance = provenance_of(scene, options, spp);
+  for (const auto& [key, value] : integrator)
+    provenance.set(key, value);
+  exr.texts = {{"haarlight:provenance", provenance.text()}};
   image::write_exr(path, exr);
 }
 

@@ -5,15 +5,17 @@
 #include <support/report.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace haarlight::tool {
 
 /// Writes the film as EXR: R, G, B, the normal N.X N.Y N.Z, pdf_sum, variance, samples; the
-/// attribute haarlight:provenance names scene, sources (each with its hash) and options. @throws
-/// Error(Output)
+/// attribute haarlight:provenance names scene, sources (each with its hash) and options,
+/// `integrator` by key and value among them. @throws Error(Output)
 void write_film_exr(const std::string& path, const renderer::RenderResult& result,
-                    const renderer::SceneDescription& scene,
-                    const renderer::RenderOptions& options);
+                    const renderer::SceneDescription& scene, const renderer::RenderOptions& options,
+                    const std::vector<std::pair<std::string, std::string>>& integrator);
 
 /// Writes the tone-mapped picture, brightened by some stops. @throws Error(Output)
 void write_film_png(const std::string& path, const renderer::Film& film, double exposure);

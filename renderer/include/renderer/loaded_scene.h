@@ -24,10 +24,11 @@ class LoadedScene {
 public:
   /// Opens the files a description names and makes what `sampler` and `unshadowed_product` need.
   /// @param unshadowed_product whether the estimator needs L_ns of a product whatever the sampler
+  /// @param further what the integrator needs besides, of SamplerNeed
   /// @throws Error(Input) if a file is broken, of the wrong kind, or one that the sampler needs is
   /// not named
   LoadedScene(const SceneDescription& description, const SourceLookups& lookups,
-              SamplerKind sampler, bool unshadowed_product);
+              SamplerKind sampler, bool unshadowed_product, unsigned further = NeedsNothing);
   LoadedScene(const LoadedScene&) = delete;
   LoadedScene& operator=(const LoadedScene&) = delete;
 

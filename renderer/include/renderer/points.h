@@ -21,4 +21,8 @@ std::uint32_t hash_words(std::uint32_t a, std::uint32_t b);
 /// @param key tells sets apart: pixels, seeds, dimensions
 void fill_points(Points kind, std::uint32_t key, std::uint32_t first, std::span<Vec2> out);
 
+/// The same in an order of its own for each key, in which aligned runs of 2^k stay nets: sets of
+/// different keys then go together point by point, as the dimensions of one path do.
+void fill_shuffled_points(Points kind, std::uint32_t key, std::uint32_t first, std::span<Vec2> out);
+
 } // namespace haarlight::renderer

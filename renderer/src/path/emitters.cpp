@@ -1,0 +1,198 @@
+#include "emitters.h"
+
+#include "../shape_placement.h"
+
+#include <wavelet/trigonometry.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace haarlight::renderer {
+
+using namespace detail;
+
+namespace {
+
+bool can_sample(const Solid& solid) {
+  return solid.kind == SolidKind::WorldSphere || solid.kind == SolidKind::Disk ||
+         solid.kind == SolidKind::Box;
+}
+
+/// World vector that a canonical axis becomes.
+Vec3 axis_of(const Emitter& emitter, int axis) {
+  return emitter.solid.to_world.linear.col(axis).cast<float>();
+}
+
+/// Two edges of a box's face across an axis, or a disk's two radii; half as long as the face.
+struct Edges {
+  Vec3 first;
+  Vec3 second;
+};
+Edges edges_across(const Emitter& emitter, int axis) {
+  return {axis_of(emitter, (axis + 1) % 3), axis_of(emitter, (axis + 2) % 3)};
+}
+
+float area_across(const Emitter& emitter, int axis) {
+  const Edges edges = edges_across(emitter, axis);
+  return edges.first.cross(edges.second).norm();
+}
+
+Emitter make_emitter(const Solid& solid, float luminance) {
+  Emitter emitter;
+  emitter.solid = solid;
+  emitter.luminance = luminance;
+  emitter.center = solid.center.cast<float>();
+  emitter.radius = static_cast<float>(solid.radius);
+  if (solid.kind == SolidKind::Disk)
+    emitter.face_areas.z() = pi * area_across(emitter, 2);
+  if (solid.kind == SolidKind::Box)
+    for (int axis = 0; axis < 3; ++axis)
+      emitter.face_areas[axis] = 4 * area_across(emitter, axis);
+  return emitter;
+}
+
+/// +1, −1: the face of that side across an axis looks towards the point; 0: neither does.
+Vec3 sides_towards(const Emitter& emitter, const Vec3& position) {
+  const Vec3 local = emitter.solid.to_object.point(position.cast<double>()).cast<float>();
+  if (emitter.solid.kind == SolidKind::Disk)
+    return {0, 0, local.z() > 0 ? 1.0F : local.z() < 0 ? -1.0F : 0.0F};
+  Vec3 sides;
+  for (int axis = 0; axis < 3; ++axis)
+    sides[axis] = local[axis] > 1 ? 1.0F : local[axis] < -1 ? -1.0F : 0.0F;
+  return sides;
+}
+
+/// World area of the faces that look towards the point.
+float area_towards(const Emitter& emitter, const Vec3& position) {
+  return sides_towards(emitter, position).cwiseAbs().dot(emitter.face_areas);
+}
+
+/// 1 − cos of the half angle that the sphere around an emitter fills; 2 from inside.
+float cap_height(const Emitter& emitter, const Vec3& position) {
+  const float distance2 = (emitter.center - position).squaredNorm();
+  const float sine2 = emitter.radius * emitter.radius / distance2;
+  return sine2 < 1 ? sine2 / (1 + std::sqrt(1 - sine2)) : 2.0F;
+}
+
+/// About the solid angle it fills, over 2π.
+float extent(const Emitter& emitter, const Vec3& position) {
+  const float height = cap_height(emitter, position);
+  if (emitter.solid.kind == SolidKind::WorldSphere)
+    return height < 2 ? height : 0.0F; // from inside it is not sampled
+  const float distance2 = (emitter.center - position).squaredNorm();
+  const float area = area_towards(emitter, position);
+  return area > 0 ? std::min(height, area / (2 * pi * distance2)) : 0.0F;
+}
+
+/// What share of samples an emitter gets, but for a factor.
+float importance(const Emitter& emitter, const Hit& from) {
+  const bool below = from.normal.dot(emitter.center - from.position) < -emitter.radius;
+  if (below || emitter.solid.object == from.object)
+    return 0;
+  return emitter.luminance * extent(emitter, from.position);
+}
+
+Vec3 cone_direction(const Emitter& emitter, const Vec3& position, const Vec2& u) {
+  const float down = u.x() * cap_height(emitter, position);
+  const float across = std::sqrt(down * (2 - down));
+  float sine = 0;
+  float cosine = 1;
+  sine_cosine(2 * pi * u.y(), sine, cosine);
+  const Frame frame = frame_about((emitter.center - position).normalized());
+  return frame.to_outer({across * cosine, across * sine, 1 - down}).normalized();
+}
+
+/// Uniform in the disk.
+Vec2 disk_point(const Vec2& u) {
+  float sine = 0;
+  float cosine = 1;
+  sine_cosine(2 * pi * u.y(), sine, cosine);
+  return std::sqrt(u.x()) * Vec2(cosine, sine);
+}
+
+/// A point of the faces that look towards `position`, by area. `u` is used up.
+Vec3 area_point(const Emitter& emitter, const Vec3& position, Vec2 u) {
+  const Vec3 sides = sides_towards(emitter, position);
+  const Vec3 areas = sides.cwiseAbs().cwiseProduct(emitter.face_areas);
+  float place = u.x() * areas.sum();
+  int axis = 0;
+  while (axis < 2 && place >= areas[axis])
+    place -= areas[axis++];
+  u.x() = std::clamp(place / areas[axis], 0.0F, 1.0F);
+  const bool disk = emitter.solid.kind == SolidKind::Disk;
+  const Vec2 p = disk ? disk_point(u) : Vec2(2 * u - Vec2::Ones());
+  const Edges edges = edges_across(emitter, axis);
+  const Vec3 center = emitter.solid.to_world.offset.cast<float>();
+  return center + p.x() * edges.first + p.y() * edges.second +
+         (disk ? 0.0F : sides[axis]) * axis_of(emitter, axis);
+}
+
+Vec3 direction_to(const Emitter& emitter, const Vec3& position, const Vec2& u) {
+  if (emitter.solid.kind == SolidKind::WorldSphere)
+    return cone_direction(emitter, position, u);
+  return (area_point(emitter, position, u) - position).normalized();
+}
+
+/// Of direction_to(), sr⁻¹.
+float density(const Emitter& emitter, const Vec3& position, const Vec3& direction, const Hit& hit) {
+  if (emitter.solid.kind == SolidKind::WorldSphere)
+    return 1 / (2 * pi * cap_height(emitter, position));
+  const float cosine = std::abs(hit.normal.dot(direction));
+  const float area = area_towards(emitter, position);
+  const float distance2 = (hit.position - position).squaredNorm();
+  return area > 0 && cosine > 0 ? distance2 / (area * cosine) : 0.0F;
+}
+
+} // namespace
+
+Emitters::Emitters(const SceneDescription& scene) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const ObjectDescription& object = scene.objects[i];
+    const MaterialDescription& material =
+        scene.materials[static_cast<std::size_t>(object.material)];
+    const float y = luminance(material.emission);
+    if (!(y > 0) || std::holds_alternative<Plane>(object.shape))
+      continue;
+    Solid solid = place_solid(object.shape, object.transform);
+    solid.object = static_cast<int>(i);
+    if (can_sample(solid))
+      m_emitters.push_back(make_emitter(solid, y));
+  }
+}
+
+std::optional<EmitterDirection> Emitters::sample(const Hit& from, float choice,
+                                                 const Vec2& u) const {
+  float total = 0;
+  for (const Emitter& emitter : m_emitters)
+    total += importance(emitter, from);
+  float place = choice * total;
+  const Emitter* chosen = nullptr;
+  for (const Emitter& emitter : m_emitters) {
+    const float share = importance(emitter, from);
+    if (share > 0)
+      chosen = &emitter; // rounding may leave none after the last
+    if (share > 0 && place < share)
+      break;
+    place -= share;
+  }
+  if (chosen == nullptr)
+    return std::nullopt;
+  return EmitterDirection{direction_to(*chosen, from.position, u), chosen->solid.object};
+}
+
+float Emitters::pdf(const Hit& from, const Vec3& direction, const Hit& hit) const {
+  float total = 0;
+  float share = 0;
+  const Emitter* found = nullptr;
+  for (const Emitter& emitter : m_emitters) {
+    const float one = importance(emitter, from);
+    total += one;
+    if (emitter.solid.object != hit.object)
+      continue;
+    share = one;
+    found = &emitter;
+  }
+  return share > 0 ? share / total * density(*found, from.position, direction, hit) : 0.0F;
+}
+
+} // namespace haarlight::renderer

@@ -1,0 +1,100 @@
+#include "path_vertex.h"
+
+namespace haarlight::renderer {
+namespace {
+
+/// Dimensions of a vertex's points.
+enum Dimension : std::uint32_t { OfLight, OfLobe, OfEmitter, OfChoice };
+
+} // namespace
+
+void PathVertex::arrive(const Hit& hit, const Vec3& wo) {
+  const Light& light = m_scene.light();
+  m_hit = hit;
+  m_point = shading_point(light.to_light(hit.normal), light.to_light(wo));
+  m_material = &m_scene.material_of(hit.object);
+  m_lobe.prepare(m_point, *m_material);
+}
+
+/// Sets m_reflected to f_r cos of the samples' directions.
+void PathVertex::evaluate(std::span<const DirectionSample> samples) {
+  m_directions.clear();
+  for (const DirectionSample& s : samples)
+    m_directions.push_back(s.direction);
+  m_reflected.resize(samples.size());
+  m_material->evaluate(m_point, m_directions, m_reflected);
+}
+
+void PathVertex::add_light(const VertexPoints& points, std::span<Rgb> sums) {
+  const Light& light = m_scene.light();
+  m_points.resize(sums.size());
+  points.fill(OfLight, m_points);
+  m_lights.resize(sums.size());
+  light.sample(m_points, m_lights);
+  m_samples.resize(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    m_samples[i].direction = m_lights[i].direction;
+  evaluate(m_samples);
+  m_lobe.pdfs(m_samples);
+  m_radiance.resize(sums.size());
+  light.radiance(m_directions, m_radiance);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (!(m_lights[i].pdf > 0) || !(m_reflected[i] * m_radiance[i] > 0).any())
+      continue;
+    if (!m_scene.shapes().occluded(leave(m_hit, light.to_world(m_directions[i]))))
+      sums[i] += m_reflected[i] * m_radiance[i] / (m_lights[i].pdf + m_samples[i].pdf);
+  }
+}
+
+void PathVertex::add_emitters(const VertexPoints& points, std::span<Rgb> sums) {
+  if (m_emitters.empty())
+    return;
+  m_points.resize(sums.size());
+  points.fill(OfEmitter, m_points);
+  m_choices.resize(sums.size());
+  points.fill(OfChoice, m_choices);
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    if (const auto to = m_emitters.sample(m_hit, m_choices[i].x(), m_points[i]))
+      sums[i] += emitter_sample(*to);
+}
+
+Rgb PathVertex::emitter_sample(const EmitterDirection& to) const {
+  Hit hit;
+  if (!(m_hit.normal.dot(to.direction) > 0) ||
+      !m_scene.shapes().intersect(leave(m_hit, to.direction), hit) || hit.object != to.object)
+    return Rgb::Zero();
+  const float pdf = m_emitters.pdf(m_hit, to.direction, hit);
+  if (!(pdf > 0))
+    return Rgb::Zero();
+  const Vec3 w = m_scene.light().to_light(to.direction);
+  return m_material->evaluate(m_point, w) * m_scene.material_of(hit.object).emission() /
+         (pdf + m_lobe.pdf(w));
+}
+
+void PathVertex::depart(const VertexPoints& points, std::span<Departure> out) {
+  m_points.resize(out.size());
+  points.fill(OfLobe, m_points);
+  m_samples.resize(out.size());
+  m_lobe.sample(m_points, m_samples);
+  evaluate(m_samples);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const DirectionSample& s = m_samples[i];
+    const Rgb weight = s.pdf > 0 ? Rgb(m_reflected[i] / s.pdf) : Rgb(Rgb::Zero());
+    out[i] = {m_scene.light().to_world(s.direction), weight, s.pdf};
+  }
+}
+
+Rgb PathVertex::escaped(const Departure& departure) const {
+  const Light& light = m_scene.light();
+  const Vec3 w = light.to_light(departure.direction);
+  return light.radiance(w) * balance(departure.pdf, light.pdf(w));
+}
+
+Rgb PathVertex::met(const Hit& from, const Departure& departure, const Hit& hit) const {
+  const Rgb& emission = m_scene.material_of(hit.object).emission();
+  if (m_emitters.empty() || !(emission > 0).any())
+    return emission;
+  return emission * balance(departure.pdf, m_emitters.pdf(from, departure.direction, hit));
+}
+
+} // namespace haarlight::renderer
