@@ -10,12 +10,6 @@ namespace {
 /// bulge and for rounding.
 constexpr float radius_pad = 1.01F;
 
-Vec3 direction_at(const SquarePlace& square, float column, float row) {
-  const float side = power_of_two(-square.level);
-  return square_to_sphere(Vec2((static_cast<float>(square.column) + column) * side,
-                               (static_cast<float>(square.row) + row) * side));
-}
-
 /// a u² + b u + c.
 struct Quadratic {
   float a, b, c;
@@ -88,15 +82,22 @@ SquareValues transposed(const SquareValues& v) {
 
 SquareCap square_cap(const SquarePlace& square) {
   SquareCap cap;
-  cap.centre = direction_at(square, 0.5F, 0.5F);
+  const float side = power_of_two(-square.level);
+  cap.centre = square_to_sphere(Vec2((static_cast<float>(square.column) + 0.5F) * side,
+                                     (static_cast<float>(square.row) + 0.5F) * side));
   if (square.level == 0)
     return cap;
-  float farthest = 0; // chord squared: without cancellation for small squares
-  for (unsigned q = 0; q < 4; ++q) {
-    const Vec3 corner =
-        direction_at(square, static_cast<float>(q & 1U), static_cast<float>(q >> 1U));
-    farthest = std::max(farthest, (corner - cap.centre).squaredNorm());
-  }
+  const Float4 u = (static_cast<float>(square.column) + Float4{0, 1, 0, 1}) * side;
+  const Float4 v = (static_cast<float>(square.row) + Float4{0, 0, 1, 1}) * side;
+  Float4 x;
+  Float4 y;
+  Float4 z;
+  square_to_sphere(u, v, x, y, z);
+  x -= cap.centre.x();
+  y -= cap.centre.y();
+  z -= cap.centre.z();
+  const Float4 chords = x * x + y * y + z * z; // without cancellation for small squares
+  const float farthest = std::max(std::max(chords[0], chords[1]), std::max(chords[2], chords[3]));
   const float chord = std::min(square.level == 1 ? 2.0F : radius_pad * radius_pad * farthest, 2.0F);
   cap.cosine = 1 - 0.5F * chord;
   cap.sine = std::sqrt(chord * (1 - 0.25F * chord));

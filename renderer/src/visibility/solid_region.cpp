@@ -2,7 +2,8 @@
 
 #include "../shape_canonical.h"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 
 namespace haarlight::renderer::detail {
 
@@ -12,12 +13,18 @@ using wavelet::SquarePlace;
 
 namespace {
 
-/// Half the width, at distance 1, of a square pyramid around a cap; wide caps have none.
-float pyramid_reach(const SquareCap& cap) { return cap.sine / cap.cosine; }
-bool has_pyramid(const SquareCap& cap) { return cap.cosine > 0.5F; }
+/// Wide caps have no pyramid around them.
+constexpr float least_cosine = 0.5F;
 
-constexpr std::array<std::array<float, 2>, 4> sides = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 constexpr std::array<std::array<float, 2>, 4> corners = {{{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+
+/// Directions, as seen from the axis of a cap, in which a plane may separate it from a shape: the
+/// first is that of the shape's middle.
+constexpr std::array<std::array<float, 2>, 5> ways = {
+    {{1, 0}, {0.7071F, 0.7071F}, {0.7071F, -0.7071F}, {0.3827F, 0.9239F}, {0.3827F, -0.9239F}}};
+
+/// By how much the best of them is turned to either side, in turn.
+constexpr std::array<float, 5> turns = {0.4F, 0.2F, 0.1F, 0.05F, 0.025F};
 
 } // namespace
 
@@ -34,40 +41,91 @@ Vec2 net_point(const SquarePlace& square, std::size_t index) {
 }
 
 SolidRays::SolidRays(const Solid& solid, const Eigen::Vector3d& origin, const Light& light)
-    : m_light(light), m_solid(solid), m_to_shape(solid.to_world.offset - origin),
-      m_object_origin(solid.to_object.point(origin)) {}
-
-bool SolidRays::meet(const Vec3& direction) const {
-  const Eigen::Vector3d w = m_light.to_world(direction).cast<double>();
-  return canonical_distance(m_solid, m_object_origin, m_solid.to_object.vector(w)) < no_hit;
+    : m_light(light), m_solid(solid),
+      m_bounds(Cap::around_ball(solid.center - origin, solid.radius)),
+      m_to_shape(solid.to_world.offset - origin), m_object_origin(solid.to_object.point(origin)) {
+  m_bounds.axis = light.to_light((solid.center - origin).normalized().cast<float>());
 }
 
-bool SolidRays::behind(const Vec3& normal) const {
+Eigen::Vector3d SolidRays::object_direction(const Vec3& direction) const {
+  return m_solid.to_object.vector(m_light.to_world(direction).cast<double>());
+}
+
+bool SolidRays::meet(const Vec3& direction) const {
+  return canonical_distance(m_solid, m_object_origin, object_direction(direction)) < no_hit;
+}
+
+double SolidRays::clearance(const Vec3& normal) const {
   const Eigen::Vector3d n = m_light.to_world(normal).cast<double>();
-  return n.dot(m_to_shape) + canonical_support(m_solid, m_solid.to_world.linear.transpose() * n) <
-         0;
+  return n.dot(m_to_shape) - canonical_support(m_solid, -(m_solid.to_world.linear.transpose() * n));
 }
 
 bool SolidRays::all_miss(const SquareCap& cap) const {
-  if (!has_pyramid(cap))
+  if (m_bounds.classify(cap) == RegionPart::Outside)
+    return true;
+  const Vec3 aside = m_bounds.axis - m_bounds.axis.dot(cap.centre) * cap.centre;
+  const float distance = aside.norm();
+  if (cap.cosine < least_cosine || distance < 1e-6F)
     return false;
-  const Frame frame = frame_about(cap.centre);
-  const float reach = pyramid_reach(cap);
-  for (const auto& [along_t, along_b] : sides)
-    if (behind(reach * frame.n - along_t * frame.t - along_b * frame.b))
+  const Vec3 t = aside / distance;
+  const Vec3 b = cap.centre.cross(t);
+  Vec2 best;
+  double most = -no_hit;
+  const auto try_way = [&](const Vec2& way) {
+    const double found =
+        clearance(cap.cosine * (way.x() * t + way.y() * b) - cap.sine * cap.centre);
+    if (found > most) {
+      most = found;
+      best = way;
+    }
+    return most > 0;
+  };
+  for (const auto& way : ways)
+    if (try_way({way[0], way[1]}))
       return true;
+  for (const float turn : turns) {
+    const Vec2 middle = best;
+    const Vec2 side = turn * Vec2(-middle.y(), middle.x());
+    if (try_way((middle + side).normalized()) || try_way((middle - side).normalized()))
+      return true;
+  }
   return false;
 }
 
-bool SolidRays::all_meet(const SquareCap& cap) const {
-  if (!has_pyramid(cap) || m_solid.kind == SolidKind::Torus) // which is not convex
-    return false;
+template <class Meets>
+bool SolidRays::corners_meet(const SquareCap& cap, const Meets& meets) const {
   const Frame frame = frame_about(cap.centre);
-  const float reach = pyramid_reach(cap);
-  for (const auto& [along_t, along_b] : corners)
-    if (!meet(frame.n + reach * (along_t * frame.t + along_b * frame.b)))
-      return false;
-  return true;
+  const float reach = cap.sine / cap.cosine;
+  return std::ranges::all_of(corners, [&](const auto& corner) {
+    return meets(object_direction(frame.n + reach * (corner[0] * frame.t + corner[1] * frame.b)));
+  });
+}
+
+bool SolidRays::all_meet(const SquareCap& cap) const {
+  if (cap.cosine < least_cosine)
+    return false;
+  if (m_solid.kind == SolidKind::Torus)
+    return tube_meets(cap);
+  return corners_meet(cap, [&](const Eigen::Vector3d& direction) {
+    return canonical_distance(m_solid, m_object_origin, direction) < no_hit;
+  });
+}
+
+/// Of a torus, which is not convex: whether all rays meet a ball in it where the middle one enters.
+bool SolidRays::tube_meets(const SquareCap& cap) const {
+  const Eigen::Vector3d middle = object_direction(cap.centre);
+  const double entry = canonical_distance(m_solid, m_object_origin, middle);
+  if (!(entry < no_hit))
+    return false;
+  const Eigen::Vector3d p = m_object_origin + entry * middle;
+  const double around = p.head<2>().norm();
+  const Eigen::Vector3d to_ball =
+      Eigen::Vector3d(p.x() / around, p.y() / around, 0) - m_object_origin;
+  const double radius_squared = m_solid.tube * m_solid.tube;
+  return corners_meet(cap, [&](const Eigen::Vector3d& direction) {
+    const double along = to_ball.dot(direction) / direction.squaredNorm();
+    return along > 0 && (to_ball - along * direction).squaredNorm() < radius_squared;
+  });
 }
 
 RegionPart SolidRegion::classify(const SquarePlace& square) const {

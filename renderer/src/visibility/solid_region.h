@@ -1,13 +1,14 @@
 #pragma once
 // What a finite shape of any kind leaves visible.
 
+#include "cap_region.h"
+
 #include <renderer/light.h>
 #include <renderer/shapes.h>
 
 #include <wavelet/region.h>
 #include <wavelet/square_cap.h>
 
-#include <array>
 #include <cstddef>
 
 namespace haarlight::renderer::detail {
@@ -30,11 +31,18 @@ public:
   bool all_meet(const wavelet::SquareCap& cap) const;
 
 private:
-  /// Whether a plane through the origin, of this normal, has the whole shape behind it.
-  bool behind(const Vec3& normal) const;
+  /// How far the whole shape lies beyond a plane through the origin of the rays, on the side that
+  /// its unit normal points to; negative if not all of it does.
+  double clearance(const Vec3& normal) const;
+  /// Whether rays along the edges of a pyramid around the cap meet something convex.
+  template <class Meets>
+  bool corners_meet(const wavelet::SquareCap& cap, const Meets& meets) const;
+  bool tube_meets(const wavelet::SquareCap& cap) const;
+  Eigen::Vector3d object_direction(const Vec3& direction) const;
 
   const Light& m_light;
   const Solid& m_solid;
+  Cap m_bounds;                    ///< around the shape's bounding sphere
   Eigen::Vector3d m_to_shape;      ///< from the origin to the shape's own origin
   Eigen::Vector3d m_object_origin; ///< the rays', as the shape sees it
 };
