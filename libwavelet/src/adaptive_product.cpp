@@ -238,7 +238,6 @@ void AdaptiveProduct::see_light(std::size_t node, detail::Quadrants& quadrants) 
 
 void AdaptiveProduct::add_leaves(std::size_t node, const detail::Quadrants& quadrants,
                                  float threshold) {
-  const int level = m_squares[node].level + 1;
   m_product.m_nodes[node].weights = quadrants.density;
   for (unsigned q = 0; q < 4; ++q) {
     const auto slot = static_cast<std::uint32_t>(4 * node + q);
@@ -246,7 +245,6 @@ void AdaptiveProduct::add_leaves(std::size_t node, const detail::Quadrants& quad
       split(slot);
       continue;
     }
-    m_product.m_leaves[slot].level = static_cast<std::uint8_t>(level);
     m_product.m_nodes[node].child[q] = ~static_cast<std::int32_t>(slot);
     set_leaf(slot, quadrants, q);
   }
@@ -256,6 +254,10 @@ void AdaptiveProduct::add_leaves(std::size_t node, const detail::Quadrants& quad
 void AdaptiveProduct::set_leaf(std::uint32_t slot, const detail::Quadrants& quadrants,
                                std::size_t q) {
   ProductLeaf& leaf = m_product.m_leaves[slot];
+  const detail::Square place = square(slot);
+  leaf.x = place.x;
+  leaf.y = place.y;
+  leaf.level = static_cast<std::uint8_t>(place.level);
   leaf.reflectance = quadrants.reflectance[q];
   leaf.slope = {quadrants.slope_x[q], quadrants.slope_y[q]};
   m_shares[slot] = {quadrants.density[q]};

@@ -67,6 +67,16 @@ expect 2 haarrender scene.json -o x.exr --integrator path --depth -1
 expect 2 haarrender scene.json -o x.exr --integrator path --estimator ratio
 rm a.exr b.exr shining.json
 
+# no samples at all
+expect 0 haarrender scene.json -o a.exr --integrator product-integral --resolution 32 --threads 1
+expect 0 haarrender scene.json -o b.exr --integrator product-integral --resolution 32 --threads 2
+same a.exr b.exr
+strings a.exr | grep -q '^resolution=32$' || fail "the picture does not say its resolution"
+expect 2 haarrender scene.json -o x.exr --resolution 64
+expect 2 haarrender scene.json -o x.exr --integrator product-integral --resolution 100
+expect 2 haarrender scene.json -o x.exr --integrator product-integral --spp 4
+rm a.exr b.exr
+
 # usage
 expect 2 haarrender scene.json
 expect 2 haarrender scene.json -o x.exr --sampler magic

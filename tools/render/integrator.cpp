@@ -6,9 +6,15 @@ using namespace renderer;
 
 void declare_integrator(Tool& app, IntegratorOptions& options) {
   app.choice(options.kind, "--integrator",
-             {{"direct", Integrator::Direct}, {"path", Integrator::Path}},
-             "Which light: direct, from the probe alone; or path, by every way, from what shines "
-             "too. renderer/PATH.md tells of paths");
+             {{"direct", Integrator::Direct},
+              {"path", Integrator::Path},
+              {"product-integral", Integrator::ProductIntegral}},
+             "Which light: direct, from the probe alone; path, by every way, from what shines "
+             "too; or product-integral, direct without samples. renderer/PATH.md and "
+             "renderer/PRODUCT_INTEGRAL.md tell of these");
+  app.choice(options.product_integral.levels, "--resolution",
+             {{"32", 5}, {"64", 6}, {"128", 7}, {"256", 8}},
+             "Of product-integral: finest squares along the side of the visibilities' maps");
   app.value(options.path.depth, "--depth",
             "Of path: surface points on a path that are lit, at most; 1 = direct light only, 0 = "
             "as many as there are",
@@ -18,6 +24,17 @@ void declare_integrator(Tool& app, IntegratorOptions& options) {
             1 << 10);
 }
 
+namespace {
+
+/// @throws UsageError for what only samples know
+void check_sampleless(const Tool& app) {
+  for (const char* option : {"--estimator", "--spp", "--time-limit"})
+    if (app.given(option))
+      throw UsageError(std::string(option) + ": --integrator product-integral takes no samples");
+}
+
+} // namespace
+
 void check_integrator(const Tool& app, const IntegratorOptions& options,
                       const RenderOptions& render) {
   if (options.kind == Integrator::Path && needs_unshadowed(render.estimator))
@@ -25,10 +42,21 @@ void check_integrator(const Tool& app, const IntegratorOptions& options,
   for (const char* own : {"--depth", "--light-samples"})
     if (options.kind != Integrator::Path && app.given(own))
       throw UsageError(std::string(own).append(": is of --integrator path"));
+  if (options.kind != Integrator::ProductIntegral && app.given("--resolution"))
+    throw UsageError("--resolution: is of --integrator product-integral");
+  if (options.kind == Integrator::ProductIntegral)
+    check_sampleless(app);
 }
 
 unsigned needs_of(const IntegratorOptions& options) {
-  return options.kind == Integrator::Path ? path_needs : NeedsNothing;
+  switch (options.kind) {
+  case Integrator::Path:
+    return path_needs;
+  case Integrator::ProductIntegral:
+    return product_integral_needs;
+  default:
+    return NeedsNothing;
+  }
 }
 
 std::vector<std::pair<std::string, std::string>> texts_of(const IntegratorOptions& options) {
@@ -36,6 +64,9 @@ std::vector<std::pair<std::string, std::string>> texts_of(const IntegratorOption
     return {{"integrator", "path"},
             {"depth", std::to_string(options.path.depth)},
             {"light samples", std::to_string(options.path.light_samples)}};
+  if (options.kind == Integrator::ProductIntegral)
+    return {{"integrator", "product-integral"},
+            {"resolution", std::to_string(1 << options.product_integral.levels)}};
   return {{"integrator", "direct"}};
 }
 
@@ -44,6 +75,8 @@ RenderResult render_by(const IntegratorOptions& options, const LoadedScene& scen
                        const RenderProgress& progress) {
   if (options.kind == Integrator::Path)
     return render_paths(scene, render, options.path, width, height, progress);
+  if (options.kind == Integrator::ProductIntegral)
+    return render_product_integral(scene, options.product_integral, width, height, progress);
   return renderer::render(scene, render, width, height, progress);
 }
 

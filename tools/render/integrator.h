@@ -2,6 +2,7 @@
 // Which light haarrender follows, and what each way of doing so may be told.
 
 #include <renderer/path.h>
+#include <renderer/product_integral.h>
 #include <support/tool.h>
 
 #include <string>
@@ -11,13 +12,15 @@
 namespace haarlight::tool {
 
 enum class Integrator {
-  Direct, ///< from the distant light straight to what is seen
-  Path    ///< all of it, by paths
+  Direct,         ///< from the distant light straight to what is seen
+  Path,           ///< all of it, by paths
+  ProductIntegral ///< as Direct, without samples
 };
 
 struct IntegratorOptions {
   Integrator kind = Integrator::Direct;
   renderer::PathOptions path;
+  renderer::ProductIntegralOptions product_integral;
 };
 
 /// `options` holds the defaults and receives what is given.

@@ -29,10 +29,11 @@ struct ProductLeaf {
   Float4 reflectance = {};      ///< product of the others' averages, lanes R, G, B
   Slope slope;                  ///< of the product beside what the factor that is left tells
   std::uint32_t node = no_node; ///< in the tree of the factor that is left
-  std::uint8_t level = 0;       ///< adaptive products alone know it
+  std::uint16_t x = 0, y = 0;   ///< in squares of its level; adaptive products alone know these
+  std::uint8_t level = 0;       ///< likewise
   std::uint8_t rest = 0;        ///< which factor is left
 };
-static_assert(sizeof(ProductLeaf) == 48);
+static_assert(sizeof(ProductLeaf) == 64);
 
 /// A product ready for sampling. Points are those of the light's square; measures per unit square.
 class ProductTree {

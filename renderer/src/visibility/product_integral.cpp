@@ -1,0 +1,208 @@
+#include <renderer/product_integral.h>
+
+#include "../film_rendering.h"
+
+#include <probe/probe_maps.h>
+#include <renderer/visibility.h>
+#include <wavelet/compress.h>
+#include <wavelet/masked_product.h>
+#include <wavelet/sphere_map.h>
+
+#include <span>
+#include <vector>
+
+namespace haarlight::renderer {
+namespace {
+
+using wavelet::MaskedLeaf;
+
+/// Points of a square that the reflectance is averaged over: Gauss-Legendre, 2 × 2.
+constexpr std::size_t points_per_leaf = 4;
+
+/// Squares of this level are not split, however much the reflectance varies.
+constexpr int finest_level = 14;
+
+Vec3 leaf_direction(const MaskedLeaf& leaf, std::size_t point) {
+  constexpr float low = 0.21132487F;
+  const float side = power_of_two(-leaf.level);
+  return wavelet::square_to_sphere(
+      Vec2((static_cast<float>(leaf.x) + ((point & 1U) == 0 ? low : 1 - low)) * side,
+           (static_cast<float>(leaf.y) + ((point & 2U) == 0 ? low : 1 - low)) * side));
+}
+
+/// The light's tree, with nothing dropped if there is a probe to make it from.
+class LightTree {
+public:
+  LightTree(const Light& light, int size) : m_view(light.tree()) {
+    if (light.probe() == nullptr)
+      return;
+    wavelet::CompressOptions options;
+    options.threshold.tolerance = 0;
+    options.coefficients = wavelet::CoefficientType::Float;
+    wavelet::CompressReport report;
+    m_tree = compress_map(probe::world_map(*light.probe(), size, probe::MapOptions{}.supersample),
+                          options, report);
+    m_view = m_tree.view();
+  }
+
+  const wavelet::TreeView& view() const { return m_view; }
+
+private:
+  wavelet::Tree m_tree;
+  wavelet::TreeView m_view;
+};
+
+/// The visibilities at one point after another.
+class PointMasks {
+public:
+  PointMasks(const VisibilityTrees& visibility, int objects, int levels)
+      : m_visibility(visibility), m_levels(levels), m_trees(static_cast<std::size_t>(objects)) {}
+
+  /// Of all objects that may be in the way; valid until the next call. The reflectance holds the
+  /// horizon itself.
+  std::span<const wavelet::TreeView> at(const Hit& hit) {
+    m_views.clear();
+    for (std::size_t i = 0; i < m_trees.size(); ++i) {
+      const int object = static_cast<int>(i);
+      if (!m_visibility.may_hide(object, hit))
+        continue;
+      if (object == hit.object)
+        m_visibility.own(hit, m_levels, m_builder, m_trees[i]);
+      else
+        m_visibility.object(object, hit, m_levels, m_builder, m_trees[i]);
+      m_views.push_back(m_trees[i].view());
+    }
+    return m_views;
+  }
+
+private:
+  const VisibilityTrees& m_visibility;
+  int m_levels;
+  wavelet::RegionTreeBuilder m_builder;
+  std::vector<wavelet::Tree> m_trees; ///< by object
+  std::vector<wavelet::TreeView> m_views;
+};
+
+/// The reflectance times what is left of the light, over the squares of a masked product.
+class ReflectedLight {
+public:
+  ReflectedLight(wavelet::MaskedProduct& masked, float split_share)
+      : m_masked(masked), m_split_share(split_share) {}
+
+  /// Per unit square.
+  Rgb integral(const ShadingPoint& point, const Material& material,
+               std::span<const MaskedLeaf> leaves) {
+    m_leaves.assign(leaves.begin(), leaves.end());
+    m_sum.setZero();
+    look_up(point, material);
+    const float largest = m_split_share * luminance(total());
+    while (!m_leaves.empty()) {
+      add_or_split(largest);
+      m_leaves.swap(m_next);
+      look_up(point, material);
+    }
+    return m_sum.cast<float>();
+  }
+
+private:
+  void look_up(const ShadingPoint& point, const Material& material) {
+    m_directions.clear();
+    for (const MaskedLeaf& leaf : m_leaves)
+      for (std::size_t k = 0; k < points_per_leaf; ++k)
+        m_directions.push_back(leaf_direction(leaf, k));
+    m_reflectance.resize(m_directions.size());
+    material.evaluate(point, m_directions, m_reflectance);
+  }
+
+  Rgb contribution(std::size_t i) const {
+    const Rgb* b = m_reflectance.data() + points_per_leaf * i;
+    return 0.25F * ((b[0] + b[1]) + (b[2] + b[3])) * light_on(m_leaves[i]);
+  }
+
+  /// How far it may be off.
+  float range(std::size_t i) const {
+    const Rgb* b = m_reflectance.data() + points_per_leaf * i;
+    const Rgb low = b[0].min(b[1]).min(b[2].min(b[3]));
+    const Rgb high = b[0].max(b[1]).max(b[2].max(b[3]));
+    return luminance((high - low) * light_on(m_leaves[i]).abs());
+  }
+
+  static Rgb light_on(const MaskedLeaf& leaf) {
+    return wavelet::to_rgb(leaf.left) * power_of_two(-2 * leaf.level);
+  }
+
+  Rgb total() const {
+    Rgb sum = Rgb::Zero();
+    for (std::size_t i = 0; i < m_leaves.size(); ++i)
+      sum += contribution(i);
+    return sum;
+  }
+
+  /// Leaves whose quadrants are to follow go to m_next.
+  void add_or_split(float largest) {
+    m_next.clear();
+    for (std::size_t i = 0; i < m_leaves.size(); ++i) {
+      if (m_leaves[i].level < finest_level && range(i) > largest)
+        m_masked.split(m_leaves[i], m_next);
+      else
+        m_sum += contribution(i).cast<double>();
+    }
+  }
+
+  wavelet::MaskedProduct& m_masked;
+  float m_split_share;
+  Eigen::Array3d m_sum;
+  std::vector<MaskedLeaf> m_leaves;
+  std::vector<MaskedLeaf> m_next;
+  std::vector<Vec3> m_directions;
+  std::vector<Rgb> m_reflectance; ///< points_per_leaf of each leaf
+};
+
+class IntegralShader : public PixelShader {
+public:
+  IntegralShader(const LoadedScene& scene, const ProductIntegralOptions& options,
+                 const wavelet::TreeView& light, const VisibilityTrees& visibility)
+      : m_scene(scene), m_options(options), m_product(light),
+        m_masks(visibility, scene.shapes().size(), options.levels),
+        m_reflected(m_masked, options.split_share) {}
+
+  void forget() override {}
+
+  void shade(const PixelHit& seen, const Pass&, PixelSums& sums) override {
+    const Light& light = m_scene.light();
+    const Material& material = m_scene.material_of(seen.hit.object);
+    const ShadingPoint point =
+        shading_point(light.to_light(seen.hit.normal), light.to_light(seen.wo));
+    const wavelet::ProductTree& product =
+        m_product.build(material.reflectance(point), m_options.product);
+    ++m_cost.points;
+    m_cost.leaves += product.leaf_count();
+    const auto leaves = m_masked.build(product, m_masks.at(seen.hit));
+    sums.add(m_reflected.integral(point, material, leaves) * wavelet::sphere_area, true, 0);
+  }
+
+private:
+  const LoadedScene& m_scene;
+  const ProductIntegralOptions& m_options;
+  wavelet::AdaptiveProduct m_product;
+  wavelet::MaskedProduct m_masked;
+  PointMasks m_masks;
+  ReflectedLight m_reflected;
+};
+
+} // namespace
+
+RenderResult render_product_integral(const LoadedScene& scene,
+                                     const ProductIntegralOptions& options, int width, int height,
+                                     const RenderProgress& progress) {
+  const VisibilityTrees visibility(scene.shapes(), scene.light());
+  const LightTree light(scene.light(), options.light_size);
+  RenderOptions once;
+  once.spp = 1;
+  const MakeShader make = [&] {
+    return std::make_unique<IntegralShader>(scene, options, light.view(), visibility);
+  };
+  return render_film(scene, once, make, width, height, progress);
+}
+
+} // namespace haarlight::renderer
