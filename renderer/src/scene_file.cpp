@@ -131,6 +131,14 @@ std::vector<MaterialDescription> read_materials(const SceneNode& node, const Fol
   return materials;
 }
 
+/// The last object's name must be no other's.
+void require_new_name(const SceneNode& node, const std::vector<ObjectDescription>& objects) {
+  const std::string& name = objects.back().name;
+  for (std::size_t i = 0; i + 1 < objects.size(); ++i)
+    if (!name.empty() && objects[i].name == name)
+      node.at("name").fail("is the name of objects[" + std::to_string(i) + "] already");
+}
+
 std::vector<ObjectDescription> read_objects(const SceneNode& node,
                                             const std::vector<std::string>& materials) {
   if (!node.is_array())
@@ -142,6 +150,7 @@ std::vector<ObjectDescription> read_objects(const SceneNode& node,
   std::vector<ObjectDescription> objects;
   for (const SceneNode& element : node.elements()) {
     objects.push_back(read_object(element));
+    require_new_name(element, objects);
     const SceneNode material = element.at("material");
     const auto found = index.find(material.text());
     if (found == index.end())

@@ -137,13 +137,15 @@ Transform read_transform(const SceneNode& node) {
 
 ObjectDescription read_object(const SceneNode& node) {
   const ShapeReader& reader = reader_of(node.at("type"));
-  Names keys = {"type", "material", "transform"};
+  Names keys = {"type", "material", "transform", "name"};
   keys.insert(keys.end(), reader.keys.begin(), reader.keys.end());
   node.allow(keys);
   ObjectDescription object;
   object.shape = reader.read(node);
   if (const auto transform = node.find("transform"))
     object.transform = read_transform(*transform);
+  if (const auto name = node.find("name"))
+    object.name = name->text();
   return object;
 }
 

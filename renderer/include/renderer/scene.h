@@ -54,6 +54,7 @@ struct ObjectDescription {
   Shape shape;
   Transform transform; ///< applied to the shape where it stands
   int material = 0;    ///< index into SceneDescription::materials
+  std::string name = {}; ///< no other object's; may be empty
 };
 
 /// File names are as the scene file gives them, put behind its folder unless they are absolute.
