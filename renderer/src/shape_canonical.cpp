@@ -176,6 +176,24 @@ SurfacePoint canonical_surface(const Solid& shape, const Vector3d& p) {
   return {p, {0, 0, 1}};
 }
 
+double canonical_support(const Solid& shape, const Vector3d& n) {
+  const double across = n.head<2>().norm();
+  switch (shape.kind) {
+  case SolidKind::Disk:
+    return across;
+  case SolidKind::Box:
+    return n.cwiseAbs().sum();
+  case SolidKind::Cylinder:
+    return across + std::abs(n.z());
+  case SolidKind::Cone:
+    return std::max(across, n.z());
+  case SolidKind::Torus:
+    return across + shape.tube * n.norm();
+  default:
+    return n.norm();
+  }
+}
+
 Bounds canonical_bounds(const Solid& shape) {
   switch (shape.kind) {
   case SolidKind::Disk:

@@ -39,6 +39,9 @@ struct SurfacePoint {
 };
 SurfacePoint canonical_surface(const Solid& shape, const Eigen::Vector3d& p);
 
+/// Largest n·p over the points p of the shape; of a torus, and of no other, that is of its hull.
+double canonical_support(const Solid& shape, const Eigen::Vector3d& n);
+
 /// Corners of a box around the shape.
 struct Bounds {
   Eigen::Vector3d low;

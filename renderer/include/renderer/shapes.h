@@ -75,6 +75,10 @@ public:
   /// Whether light on an object may be in another's shadow or its own.
   bool may_occlude(int object) const;
 
+  /// What rays are held against: the shapes that are finite, and the planes.
+  const std::vector<detail::Solid>& solids() const { return m_solids; }
+  const std::vector<detail::WorldPlane>& planes() const { return m_planes; }
+
 private:
   void add_solid(detail::Solid solid);
 

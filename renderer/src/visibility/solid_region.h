@@ -1,0 +1,55 @@
+#pragma once
+// What a finite shape of any kind leaves visible.
+
+#include <renderer/light.h>
+#include <renderer/shapes.h>
+
+#include <wavelet/region.h>
+#include <wavelet/square_cap.h>
+
+#include <array>
+#include <cstddef>
+
+namespace haarlight::renderer::detail {
+
+/// Points of a square that rays sample it by: a (0, 2)-net of 16 (Sobol'), as are its first 4.
+inline constexpr std::size_t net_size = 16;
+Vec2 net_point(const wavelet::SquarePlace& square, std::size_t index);
+
+/// Rays from one point against one shape; directions are the light's.
+class SolidRays {
+public:
+  /// @param light must outlive this, and so must the solid
+  SolidRays(const Solid& solid, const Eigen::Vector3d& origin, const Light& light);
+
+  bool meet(const Vec3& direction) const;
+
+  /// Whether no ray into the cap meets the shape; may say no where it would be hard to tell.
+  bool all_miss(const wavelet::SquareCap& cap) const;
+  /// Whether all of them do; likewise.
+  bool all_meet(const wavelet::SquareCap& cap) const;
+
+private:
+  /// Whether a plane through the origin, of this normal, has the whole shape behind it.
+  bool behind(const Vec3& normal) const;
+
+  const Light& m_light;
+  const Solid& m_solid;
+  Eigen::Vector3d m_to_shape;      ///< from the origin to the shape's own origin
+  Eigen::Vector3d m_object_origin; ///< the rays', as the shape sees it
+};
+
+/// 1 where rays miss a shape.
+class SolidRegion final : public wavelet::Region {
+public:
+  SolidRegion(const Solid& solid, const Eigen::Vector3d& origin, const Light& light)
+      : m_rays(solid, origin, light) {}
+
+  wavelet::RegionPart classify(const wavelet::SquarePlace& square) const override;
+  float coverage(const wavelet::SquarePlace& square) const override;
+
+private:
+  SolidRays m_rays;
+};
+
+} // namespace haarlight::renderer::detail
