@@ -34,9 +34,9 @@ std::unique_ptr<Relighter> make_relighter(const Transfer& transfer, const SceneD
                                           const Variation& variation) {
   switch (variation.varying) {
   case Varying::Light: return light_relighter(transfer, scene);
-  default: break;
+  case Varying::Object: return object_relighter(transfer, scene, variation);
+  default: return reflectance_relighter(transfer, scene, variation);
   }
-  throw_input_error(transfer.path(), "varies what cannot be applied yet");
 }
 
 } // namespace haarlight::renderer
