@@ -13,23 +13,25 @@ namespace haarlight::renderer::detail {
 /// not at all, so that only what the cap's edge crosses is looked into. Shared by threads.
 class HiddenShare {
 public:
-  /// @param levels of the trees
-  explicit HiddenShare(int levels);
+  HiddenShare();
 
   /// ∫∫ T over the cap, per channel; the whole square's area is 1.
   Rgb within(const wavelet::TreeView& tree, const Cap& cap) const;
 
 private:
+  struct Walk {
+    const wavelet::TreeView& tree;
+    const Cap& cap;
+    float negligible; ///< luminance times area
+  };
   struct Square {
     std::uint32_t index; ///< in a complete tree: quadrant q of i is 4 i + 1 + q
-    wavelet::SquarePlace place;
+    int level;
   };
 
-  wavelet::RegionPart classify(const Square& square, const Cap& cap) const;
-  Float4 within(const wavelet::TreeView& tree, std::uint32_t node, Float4 mean,
-                const Square& square, const Cap& cap) const;
+  Float4 within(const Walk& walk, std::uint32_t node, Float4 mean, const Square& square) const;
 
-  std::vector<wavelet::SquareCap> m_bounds; ///< of the coarser squares, as in a complete tree
+  std::vector<wavelet::SquareCap> m_bounds; ///< as in a complete tree
 };
 
 } // namespace haarlight::renderer::detail

@@ -7,7 +7,6 @@
 #include <wavelet/parallel.h>
 #include <wavelet/sphere_map.h>
 
-#include <bit>
 #include <optional>
 
 namespace haarlight::renderer {
@@ -108,8 +107,7 @@ public:
                   const Variation& variation)
       : m_transfer(transfer), m_scene(scene, SourceLookups(), SamplerKind::Product, false),
         m_object(variation.index),
-        m_points(film_points(scene, transfer.width(), transfer.height(), m_object)),
-        m_share(std::countr_zero(static_cast<unsigned>(transfer.resolution()))) {}
+        m_points(film_points(scene, transfer.width(), transfer.height(), m_object)) {}
 
   Film make(const Change& change) override {
     const SceneDescription& scene = m_scene.description();
