@@ -7,6 +7,7 @@
 #include <wavelet/error.h>
 #include <wavelet/input_file.h>
 
+#include <algorithm>
 #include <map>
 
 namespace haarlight::renderer {
@@ -131,12 +132,17 @@ std::vector<MaterialDescription> read_materials(const SceneNode& node, const Fol
   return materials;
 }
 
-/// The last object's name must be no other's.
-void require_new_name(const SceneNode& node, const std::vector<ObjectDescription>& objects) {
-  const std::string& name = objects.back().name;
-  for (std::size_t i = 0; i + 1 < objects.size(); ++i)
-    if (!name.empty() && objects[i].name == name)
-      node.at("name").fail("is the name of objects[" + std::to_string(i) + "] already");
+std::vector<std::string> read_object_names(const SceneNode& node) {
+  std::vector<std::string> names;
+  for (const SceneNode& element : node.elements()) {
+    const auto name = element.find("name");
+    const std::string text = name ? name->text() : "";
+    const auto same = std::find(names.begin(), names.end(), text);
+    if (!text.empty() && same != names.end())
+      name->fail("is the name of objects[" + std::to_string(same - names.begin()) + "] already");
+    names.push_back(text);
+  }
+  return names;
 }
 
 std::vector<ObjectDescription> read_objects(const SceneNode& node,
@@ -150,7 +156,6 @@ std::vector<ObjectDescription> read_objects(const SceneNode& node,
   std::vector<ObjectDescription> objects;
   for (const SceneNode& element : node.elements()) {
     objects.push_back(read_object(element));
-    require_new_name(element, objects);
     const SceneNode material = element.at("material");
     const auto found = index.find(material.text());
     if (found == index.end())
@@ -178,6 +183,7 @@ SceneDescription load_scene(const std::string& path) {
   scene.light = read_light(root.at("light"), folder);
   scene.materials = read_materials(root.at("materials"), folder);
   scene.objects = read_objects(root.at("objects"), root.at("materials").keys());
+  scene.object_names = read_object_names(root.at("objects"));
   return scene;
 }
 

@@ -144,8 +144,6 @@ ObjectDescription read_object(const SceneNode& node) {
   object.shape = reader.read(node);
   if (const auto transform = node.find("transform"))
     object.transform = read_transform(*transform);
-  if (const auto name = node.find("name"))
-    object.name = name->text();
   return object;
 }
 

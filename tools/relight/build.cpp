@@ -22,6 +22,7 @@ struct Options {
   std::string vary = "light";
   std::string size;
   int resolution = 128;
+  std::optional<double> tolerance;
   bool pack = false;
   wavelet::ProjectionOptions projection;
 };
@@ -36,10 +37,11 @@ void declare(Tool& app, Options& options) {
   app.value(options.resolution, "--resolution",
             "Finest squares along a side of the sphere's square: a power of two, 4 to 4096", 4,
             4096);
-  app.value(options.projection.tolerance, "--tolerance",
+  app.value(options.tolerance, "--tolerance",
             "Relative error, root mean square, that dropping may make in what one small light adds "
-            "to a pixel; far less in pictures, whose lights are many",
-            0.0001, 1);
+            "to a pixel; far less in pictures, whose lights are many [light 0.15, object 0.8, "
+            "material and view 1]",
+            0.0001, 100);
   app.flag(options.pack, "--pack",
            "Write the packed form: several times smaller, slower to write and to open");
   app.offer_json();
@@ -88,6 +90,8 @@ int build(const Tool& app, Options& options) {
   if (scene.width > 65536 || scene.height > 65536)
     throw UsageError("--size: a transfer has at most 65536 pixels along a side");
   const Variation variation = variation_of(scene, options.vary);
+  options.projection.tolerance =
+      options.tolerance.value_or(default_transfer_tolerance(variation.varying));
   OutputFile file(options.output);
   const LoadedScene loaded(scene, SourceLookups(), SamplerKind::Product, false);
   const auto start = std::chrono::steady_clock::now();

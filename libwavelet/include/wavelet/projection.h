@@ -28,8 +28,8 @@ struct ProjectionTerm {
 
 struct ProjectionOptions {
   int levels = 7; ///< of the trees made: squares of side 2^-levels are not split, 1 to 13
-  /// Bound of sqrt(∫ (T' − T)²/T / ∫ T) for the tree T' of a product T: the relative error, root
-  /// mean square, of ∫ T·F where F is one small light whose place is distributed as T is. Squares
+  /// Bound of sqrt(∫ (T' − T)²/T' / ∫ T) for the tree T' of a product T: the relative error, root
+  /// mean square, of ∫ T·F where F is one small light whose place is distributed as T' is. Squares
   /// darker than 3 % of the mean count as if they were that bright. By estimate; what varies within
   /// the finest squares is left out.
   double tolerance = 0.1;

@@ -54,7 +54,6 @@ struct ObjectDescription {
   Shape shape;
   Transform transform; ///< applied to the shape where it stands
   int material = 0;    ///< index into SceneDescription::materials
-  std::string name = {}; ///< no other object's; may be empty
 };
 
 /// File names are as the scene file gives them, put behind its folder unless they are absolute.
@@ -67,6 +66,8 @@ struct SceneDescription {
   LightDescription light;
   std::vector<MaterialDescription> materials; ///< in the file's order
   std::vector<ObjectDescription> objects;     ///< in the file's order, as hits number them
+  std::vector<std::string> object_names; ///< of the objects in order, all different but for empty
+                                         ///< ones; may be shorter than `objects`
 };
 
 } // namespace haarlight::renderer

@@ -35,13 +35,18 @@ struct Variation {
 
 /// What the film's rays meet; hits are turned to the viewer's side.
 struct FilmPoint {
-  Hit hit;       ///< object −1: nothing
-  Vec3 wo;       ///< unit, towards the viewer, world
+  Hit hit; ///< object −1: nothing
+  Vec3 wo; ///< unit, towards the viewer, world
 };
 
 /// One point for each pixel, row 0 first. @param without object that rays pass through; −1: none
 std::vector<FilmPoint> film_points(const SceneDescription& scene, int width, int height,
                                    int without = -1);
+
+/// The tolerance of projections that leaves pictures an error of about 2 %, and often less: what
+/// the varying factor is integrated with is coarser for an object, which hides whole regions, and
+/// for a reflectance than for a light.
+double default_transfer_tolerance(Varying varying);
 
 /// Makes the trees of pixels, one after another; one for each thread.
 ///

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 
 namespace haarlight::renderer {
 namespace {
@@ -54,6 +53,14 @@ std::string units_of(Varying varying) {
 }
 
 } // namespace
+
+double default_transfer_tolerance(Varying varying) {
+  switch (varying) {
+  case Varying::Light: return 0.15;
+  case Varying::Object: return 0.8;
+  default: return 1;
+  }
+}
 
 wavelet::SetInfo transfer_info(const SceneDescription& scene, const Variation& variation,
                                const wavelet::ProjectionOptions& options, int width, int height) {

@@ -26,9 +26,10 @@ int material_index(const SceneDescription& scene, const std::string& name) {
 }
 
 int object_index(const SceneDescription& scene, const std::string& name) {
-  for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    if (!name.empty() && scene.objects[i].name == name)
-      return static_cast<int>(i);
+  const auto& names = scene.object_names;
+  const auto named = std::find(names.begin(), names.end(), name);
+  if (!name.empty() && named != names.end())
+    return static_cast<int>(named - names.begin());
   int number = -1;
   const char* const end = name.data() + name.size();
   const auto read = std::from_chars(name.data(), end, number);
