@@ -23,7 +23,7 @@ constexpr float straight_share = 0.25F;
 constexpr int finest_level = kept_levels;
 
 /// … and where a square holds less than this share of the whole.
-constexpr float negligible_share = 2e-4F;
+constexpr float negligible_share = 1e-3F;
 
 /// Half a square's mean width, of the radius of the circle around it.
 constexpr float half_width = 0.8F;

@@ -12,6 +12,10 @@
 namespace haarlight::renderer {
 namespace {
 
+/// What the product that shades the moved object is refined to: coarser than where a picture is
+/// rendered once.
+constexpr float shading_variance = 0.03F;
+
 /// The moved object by itself.
 class MovedObject {
 public:
@@ -60,7 +64,7 @@ class ObjectShader {
 public:
   ObjectShader(const LoadedScene& scene, int object)
       : m_scene(scene), m_object(object), m_product(scene.light().tree()) {
-    m_options.drift_bound = 0;
+    m_options.variance_bound = shading_variance;
     for (int i = 0; i < static_cast<int>(scene.description().objects.size()); ++i) {
       const ObjectDescription& other = scene.description().objects[static_cast<std::size_t>(i)];
       if (i != object)
