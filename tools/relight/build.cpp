@@ -40,7 +40,7 @@ void declare(Tool& app, Options& options) {
   app.value(options.tolerance, "--tolerance",
             "Relative error, root mean square, that dropping may make in what one small light adds "
             "to a pixel; far less in pictures, whose lights are many [light 0.15, object 0.8, "
-            "material and view 1]",
+            "material and view 0.5]",
             0.0001, 100);
   app.flag(options.pack, "--pack",
            "Write the packed form: several times smaller, slower to write and to open");

@@ -58,7 +58,7 @@ double default_transfer_tolerance(Varying varying) {
   switch (varying) {
   case Varying::Light: return 0.15;
   case Varying::Object: return 0.8;
-  default: return 1;
+  default: return 0.5;
   }
 }
 

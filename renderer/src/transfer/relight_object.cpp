@@ -12,10 +12,6 @@
 namespace haarlight::renderer {
 namespace {
 
-/// What the product that shades the moved object is refined to: coarser than where a picture is
-/// rendered once.
-constexpr float shading_variance = 0.03F;
-
 /// The moved object by itself.
 class MovedObject {
 public:
@@ -59,12 +55,13 @@ private:
 };
 
 /// Shades the moved object itself: the product of light and reflectance, of whose squares those
-/// count whose centres nothing else hides.
+/// count whose centres nothing else hides. Each product follows the last, of a point that should
+/// be close by.
 class ObjectShader {
 public:
   ObjectShader(const LoadedScene& scene, int object)
       : m_scene(scene), m_object(object), m_product(scene.light().tree()) {
-    m_options.variance_bound = shading_variance;
+    m_options.drift_bound = 0; // integrals have to be each point's own
     for (int i = 0; i < static_cast<int>(scene.description().objects.size()); ++i) {
       const ObjectDescription& other = scene.description().objects[static_cast<std::size_t>(i)];
       if (i != object)
@@ -77,7 +74,9 @@ public:
     const ShadingPoint point = shading_point(light.to_light(hit.normal), light.to_light(wo));
     const wavelet::RotatedReflectance reflectance =
         m_scene.material_of(m_object).reflectance(point);
-    const wavelet::ProductTree& product = m_product.build(reflectance, m_options);
+    const wavelet::ProductTree& product = m_follows ? m_product.follow(reflectance, m_options)
+                                                    : m_product.build(reflectance, m_options);
+    m_follows = true;
     Float4 sum = {};
     for (const wavelet::ProductNode& node : product.nodes())
       for (const std::int32_t child : node.child)
@@ -103,6 +102,7 @@ private:
   ShapeSet m_others;
   wavelet::AdaptiveOptions m_options;
   wavelet::AdaptiveProduct m_product;
+  bool m_follows = false;
 };
 
 class ObjectRelighter : public Relighter {
@@ -119,9 +119,10 @@ public:
                             m_scene.light());
     const Camera camera(scene.camera, m_transfer.width(), m_transfer.height());
     Film film(m_transfer.width(), m_transfer.height());
-    parallel_ranges(film.count(), 256, [&](std::size_t begin, std::size_t end) {
+    const auto width = static_cast<std::size_t>(film.width);
+    parallel_for(static_cast<std::size_t>(film.height), [&](std::size_t y) {
       ObjectShader shader(m_scene, m_object);
-      for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t i = y * width; i < (y + 1) * width; ++i)
         film.set_color(i, radiance(i, moved, camera, shader));
     });
     return film;
