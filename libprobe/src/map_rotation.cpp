@@ -56,9 +56,8 @@ std::vector<Look> looks_of_frame(const Frame& frame, int count) {
   const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
   std::vector<Look> looks;
   for (int k = 0; k < count; ++k)
-    looks.push_back(
-        {frame,
-         Vec2(fraction(0.5 + k * 0.7548776662466927), fraction(0.5 + k * 0.5698402909980532))});
+    looks.push_back({frame, Vec2(fraction(0.5 + k * 0.7548776662466927),
+                                 fraction(0.5 + k * 0.5698402909980532))});
   return looks;
 }
 

@@ -17,8 +17,7 @@ int even_bits(std::uint32_t place) {
 }
 
 Float4 coefficient(const Map& transformed, int level, int x, int y, int m) {
-  const float* c = transformed.rgb.data() +
-                   3 * coefficient_index(transformed.size, level, x, y, m);
+  const float* c = transformed.rgb.data() + 3 * coefficient_index(transformed.size, level, x, y, m);
   return Float4{c[0], c[1], c[2], 0};
 }
 

@@ -17,10 +17,6 @@ constexpr int first_level = 3;
 /// The tolerance's share, as a variance, that refining may leave; the rest is for pruning.
 constexpr double refining_share = 0.25;
 
-/// Squares darker than this share of the mean count as if they were that bright, as in
-/// Criterion::Variance.
-constexpr float darkest = 0.03F;
-
 /// How far the threshold of splitting falls from round to round.
 constexpr float fall = 0.25F;
 
@@ -35,11 +31,13 @@ void rotate_centres(const ReflectionFrame& reflection, float u, float v, float h
   Float4 wy = {};
   Float4 wz = {};
   square_to_sphere(us, vs, wx, wy, wz);
-  const auto along = [&](const Vec3& axis) { return axis.x() * wx + axis.y() * wy + axis.z() * wz; };
+  const auto along = [&](const Vec3& axis) {
+    return axis.x() * wx + axis.y() * wy + axis.z() * wz;
+  };
   Float4 pu = {};
   Float4 pv = {};
-  sphere_to_square(along(reflection.frame.t), along(reflection.frame.b),
-                   along(reflection.frame.n), pu, pv);
+  sphere_to_square(along(reflection.frame.t), along(reflection.frame.b), along(reflection.frame.n),
+                   pu, pv);
   for (int q = 0; q < 4; ++q) {
     places.u[q] = pu[q];
     places.v[q] = pv[q];
@@ -129,8 +127,8 @@ double Projection::split_above(float threshold) {
 /// @param slot that the node comes from, −1 for the root
 void Projection::add_node(std::int32_t level, std::uint32_t x, std::uint32_t y, std::int32_t slot) {
   const std::size_t node = m_nodes.size();
-  m_nodes.push_back({level, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                     {-1, -1, -1, -1}});
+  m_nodes.push_back(
+      {level, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), {-1, -1, -1, -1}});
   if (m_products.size() < 4 * node + 4) {
     const std::size_t room = std::max<std::size_t>(8 * node, 256);
     m_products.resize(room);
@@ -147,9 +145,9 @@ void Projection::add_node(std::int32_t level, std::uint32_t x, std::uint32_t y, 
   multiply(node);
   if (slot >= 0) {
     m_nodes[static_cast<std::size_t>(slot) / 4].child[slot & 3] = static_cast<std::int32_t>(node);
-    m_brightness += (luminance_of(mean_of(node)) -
-                     luminance_of(m_products[static_cast<std::size_t>(slot)])) *
-                    power_of_two(-2 * level);
+    m_brightness +=
+        (luminance_of(mean_of(node)) - luminance_of(m_products[static_cast<std::size_t>(slot)])) *
+        power_of_two(-2 * level);
   }
   if (level + 1 < m_options.levels)
     for (int q = 0; q < 4; ++q)
@@ -166,8 +164,7 @@ void Projection::split_terms(std::size_t node, std::int32_t slot) {
     }
     const Float4 mean =
         slot < 0 ? to_lanes(tree.mean) : slots.means[static_cast<std::size_t>(slot)];
-    const std::uint32_t from =
-        slot < 0 ? tree.root() : slots.nodes[static_cast<std::size_t>(slot)];
+    const std::uint32_t from = slot < 0 ? tree.root() : slots.nodes[static_cast<std::size_t>(slot)];
     if (from == no_node) {
       std::fill_n(slots.means.begin() + static_cast<std::ptrdiff_t>(4 * node), 4, mean);
       std::fill_n(slots.nodes.begin() + static_cast<std::ptrdiff_t>(4 * node), 4, no_node);
@@ -218,9 +215,8 @@ float Projection::error_of(std::size_t slot, int level) const {
     const std::uint32_t node = m_slots[t].nodes[slot];
     if (node == no_node || !(mean > 0))
       continue;
-    const float variance = m_terms[t].variances != nullptr
-                               ? m_terms[t].variances[node]
-                               : std::max(mean * (1 - mean), 0.0F);
+    const float variance = m_terms[t].variances != nullptr ? m_terms[t].variances[node]
+                                                           : std::max(mean * (1 - mean), 0.0F);
     spread *= 1 + variance / (mean * mean);
   }
   if (m_reflectance != nullptr) {

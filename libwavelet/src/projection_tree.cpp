@@ -8,8 +8,6 @@
 namespace haarlight::wavelet {
 namespace {
 
-constexpr float darkest = 0.03F; ///< share of the mean that a square's brightness counts as at least
-
 Float4 largest(const Details& d) {
   return larger(larger(absolute(d.d1), absolute(d.d2)), absolute(d.d3));
 }

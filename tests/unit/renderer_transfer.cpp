@@ -61,10 +61,9 @@ TransferReport build(const SceneDescription& description, const std::string& var
   options.levels = 6;
   options.tolerance = tolerance;
   OutputFile file(path);
-  wavelet::TreeSetWriter writer(file, transfer_info(description, variation, options, side, side),
-                                3, options.coefficients);
-  const TransferReport report =
-      build_transfer(scene, variation, options, side, side, writer);
+  wavelet::TreeSetWriter writer(file, transfer_info(description, variation, options, side, side), 3,
+                                options.coefficients);
+  const TransferReport report = build_transfer(scene, variation, options, side, side, writer);
   writer.finish();
   file.commit();
   return report;

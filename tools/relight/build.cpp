@@ -55,6 +55,14 @@ Variation variation_of(const SceneDescription& scene, const std::string& text) {
   }
 }
 
+wavelet::SetInfo info_of(const SceneDescription& scene, const Variation& variation,
+                         const Options& options) {
+  wavelet::SetInfo info =
+      transfer_info(scene, variation, options.projection, scene.width, scene.height);
+  set_sources(scene, info.provenance);
+  return info;
+}
+
 std::unique_ptr<wavelet::TreeSink> make_sink(OutputFile& file, const wavelet::SetInfo& info,
                                              const Options& options) {
   if (options.pack)
@@ -95,10 +103,7 @@ int build(const Tool& app, Options& options) {
   OutputFile file(options.output);
   const LoadedScene loaded(scene, SourceLookups(), SamplerKind::Product, false);
   const auto start = std::chrono::steady_clock::now();
-  const auto sink =
-      make_sink(file,
-                transfer_info(scene, variation, options.projection, scene.width, scene.height),
-                options);
+  const auto sink = make_sink(file, info_of(scene, variation, options), options);
   ProgressBar bar(app, "building");
   const TransferReport report = build_transfer(loaded, variation, options.projection, scene.width,
                                                scene.height, *sink, bar.callback());

@@ -75,9 +75,10 @@ void declare_change(Tool& app, ChangeOptions& options) {
   app.input(options.transfer, "T.haar", "Transfer that haarrelight build made");
   app.text(options.scene, "--scene", "SCENE.json",
            "The scene it was made of [the file of that name beside T.haar]");
-  app.text(options.light, "--light", "PROBE",
-           "Another light for --vary light: any probe image, or a .haar of one world-frame map [the "
-           "scene's]");
+  app.text(
+      options.light, "--light", "PROBE",
+      "Another light for --vary light: any probe image, or a .haar of one world-frame map [the "
+      "scene's]");
   app.text(options.brdf, "--brdf", "BRDF",
            "Another reflectance for --vary material: a MERL file, or a .haar of its θ_r-only set "
            "[the scene's]");
@@ -104,9 +105,8 @@ void write_relit_exr(const std::string& path, const Film& film, const Transfer& 
   image::ExrImage exr;
   exr.width = film.width;
   exr.height = film.height;
-  exr.channels = {{"R", film.rgb.data(), 3},
-                  {"G", film.rgb.data() + 1, 3},
-                  {"B", film.rgb.data() + 2, 3}};
+  exr.channels = {
+      {"R", film.rgb.data(), 3}, {"G", film.rgb.data() + 1, 3}, {"B", film.rgb.data() + 2, 3}};
   exr.texts = {{"haarlight:provenance", p.text()}};
   image::write_exr(path, exr);
 }

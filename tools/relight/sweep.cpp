@@ -57,8 +57,8 @@ Eigen::Vector3d between(const std::vector<double>& from, const std::vector<doubl
 
 Change change_at(const Options& options, int frame) {
   Change change;
-  change.rotate = between(options.rotate_from, options.rotate_to,
-                          static_cast<double>(frame) / options.frames);
+  change.rotate =
+      between(options.rotate_from, options.rotate_to, static_cast<double>(frame) / options.frames);
   change.move = between(options.move_from, options.move_to,
                         options.frames > 1 ? static_cast<double>(frame) / (options.frames - 1) : 0)
                     .cast<float>();
@@ -89,8 +89,7 @@ int sweep(const Tool& app, Options& options) {
   for (int frame = 0; frame < options.frames; ++frame) {
     const auto start = std::chrono::steady_clock::now();
     const Film film = session.make(change_at(options, frame));
-    seconds +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     image::SheetEntry entry{picture_of(film, options), std::to_string(frame)};
     image::write_png(frame_path(options.output, frame), entry.picture);
     if (frame % every == 0)

@@ -29,8 +29,7 @@ void set_path(std::string& path, const std::string& word) {
 } // namespace
 
 Tool::Tool(const std::string& name, const std::string& description)
-    : m_name(name.substr(0, name.find(' '))), m_usage(name),
-      m_parser(std::make_unique<Parser>()) {
+    : m_name(name.substr(0, name.find(' '))), m_usage(name), m_parser(std::make_unique<Parser>()) {
   m_parser->app.name(m_usage);
   m_parser->app.description(m_usage + ": " + description);
   m_parser->app.set_help_flag("-h,--help", "Print this help and exit");

@@ -58,6 +58,9 @@ public:
   const ProjectionReport& report() const { return m_report; }
 
 private:
+  /// Share of the mean that a square's brightness counts as at least, as in Criterion::Variance.
+  static constexpr float darkest = 0.03F;
+
   /// A square cut in four. Slot 4 × node + q is quadrant q.
   struct Node {
     std::int32_t level; ///< of the node itself
@@ -98,10 +101,10 @@ private:
   Float4 m_mean = {};
   float m_brightness = 0; ///< mean luminance so far
   std::vector<Node> m_nodes;
-  std::vector<Slots> m_slots;     ///< by term
-  std::vector<Float4> m_looked;   ///< reflectance by slot, lane 3 its deviation
-  std::vector<Float4> m_products; ///< by slot
-  std::vector<float> m_errors;    ///< by slot
+  std::vector<Slots> m_slots;       ///< by term
+  std::vector<Float4> m_looked;     ///< reflectance by slot, lane 3 its deviation
+  std::vector<Float4> m_products;   ///< by slot
+  std::vector<float> m_errors;      ///< by slot
   std::vector<std::int32_t> m_open; ///< slots that may be split
   std::vector<Cost> m_costs;
   std::vector<Cost> m_sorted;

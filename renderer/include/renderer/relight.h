@@ -64,15 +64,13 @@ std::unique_ptr<Relighter> make_relighter(const Transfer& transfer, const SceneD
 
 /// The light turns, or is another: inner products with its coefficients. Background pixels show it
 /// itself.
-std::unique_ptr<Relighter> light_relighter(const Transfer& transfer,
-                                           const SceneDescription& scene);
+std::unique_ptr<Relighter> light_relighter(const Transfer& transfer, const SceneDescription& scene);
 
 /// One object moves and its shadows with it: of each tree what the object hides is left out, found
 /// for a sphere by descending where the edge of its circle goes, and for other shapes by the inner
 /// product with its visibility. The object itself is drawn where it comes to stand, lit by the
 /// scene's light as far as its neighbours let it through.
-std::unique_ptr<Relighter> object_relighter(const Transfer& transfer,
-                                            const SceneDescription& scene,
+std::unique_ptr<Relighter> object_relighter(const Transfer& transfer, const SceneDescription& scene,
                                             const Variation& variation);
 
 /// One material is another, or all points are seen from another eye: products of the trees with

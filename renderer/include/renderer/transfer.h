@@ -1,7 +1,7 @@
 #pragma once
-// Transfer: of each pixel's integral ∫ f_r L v cos dω the product of all factors but one, as a tree.
-// While that one is moved about, the picture follows by inner products (the paper's eqs. 14-16 with
-// T1 kept and T2 new).
+// Transfer: of each pixel's integral ∫ f_r L v cos dω the product of all factors but one, as a
+// tree. While that one is moved about, the picture follows by inner products (the paper's eqs.
+// 14-16 with T1 kept and T2 new).
 //
 // All factors share one frame: the light's own, which is the world's but for the scene's "rotate".
 // It is the best one for each kind of variation. A new light or visibility is then the same

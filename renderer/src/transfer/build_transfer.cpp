@@ -46,9 +46,12 @@ std::string number_text(double number) {
 
 std::string units_of(Varying varying) {
   switch (varying) {
-  case Varying::Light: return "f_r cos v, 1/sr";
-  case Varying::Object: return "f_r cos L v, radiance per sr";
-  default: return "L v, radiance";
+  case Varying::Light:
+    return "f_r cos v, 1/sr";
+  case Varying::Object:
+    return "f_r cos L v, radiance per sr";
+  default:
+    return "L v, radiance";
   }
 }
 
@@ -56,9 +59,12 @@ std::string units_of(Varying varying) {
 
 double default_transfer_tolerance(Varying varying) {
   switch (varying) {
-  case Varying::Light: return 0.15;
-  case Varying::Object: return 0.8;
-  default: return 0.5;
+  case Varying::Light:
+    return 0.15;
+  case Varying::Object:
+    return 0.8;
+  default:
+    return 0.5;
   }
 }
 

@@ -71,8 +71,7 @@ Float4 HiddenShare::within(const Walk& walk, std::uint32_t node, Float4 mean,
   if (part == RegionPart::Inside)
     return mean;
   const bool whole = node == wavelet::no_node;
-  if (square.level == finest_level ||
-      weight * power_of_two(-2 * square.level) <= walk.negligible ||
+  if (square.level == finest_level || weight * power_of_two(-2 * square.level) <= walk.negligible ||
       (whole && edge_is_straight(bounds, square.level, walk.cap)))
     return mean * share_inside(bounds, walk.cap);
   std::array<Float4, 4> means = {mean, mean, mean, mean};

@@ -33,9 +33,12 @@ Variation Transfer::variation(const SceneDescription& scene) const {
 std::unique_ptr<Relighter> make_relighter(const Transfer& transfer, const SceneDescription& scene,
                                           const Variation& variation) {
   switch (variation.varying) {
-  case Varying::Light: return light_relighter(transfer, scene);
-  case Varying::Object: return object_relighter(transfer, scene, variation);
-  default: return reflectance_relighter(transfer, scene, variation);
+  case Varying::Light:
+    return light_relighter(transfer, scene);
+  case Varying::Object:
+    return object_relighter(transfer, scene, variation);
+  default:
+    return reflectance_relighter(transfer, scene, variation);
   }
 }
 

@@ -91,9 +91,8 @@ private:
     if (!(wavelet::lane_sum(value * wavelet::luminance_lanes) > 0))
       return Float4{};
     const float side = power_of_two(-leaf.level);
-    const Vec3 w = m_scene.light().to_world(
-        wavelet::square_to_sphere(Vec2((static_cast<float>(leaf.x) + 0.5F) * side,
-                                       (static_cast<float>(leaf.y) + 0.5F) * side)));
+    const Vec3 w = m_scene.light().to_world(wavelet::square_to_sphere(Vec2(
+        (static_cast<float>(leaf.x) + 0.5F) * side, (static_cast<float>(leaf.y) + 0.5F) * side)));
     return m_others.occluded(leave(hit, w)) ? Float4{} : value;
   }
 
@@ -157,8 +156,7 @@ private:
 
 } // namespace
 
-std::unique_ptr<Relighter> object_relighter(const Transfer& transfer,
-                                            const SceneDescription& scene,
+std::unique_ptr<Relighter> object_relighter(const Transfer& transfer, const SceneDescription& scene,
                                             const Variation& variation) {
   return std::make_unique<ObjectRelighter>(transfer, scene, variation);
 }

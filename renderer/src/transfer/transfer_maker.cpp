@@ -72,15 +72,14 @@ wavelet::Tree TransferMaker::make(const FilmPoint& point) {
   add_visibilities(point.hit);
   const bool varying = varies(point);
   const bool keeps_light = m_variation.varying != Varying::Light;
-  const bool keeps_reflectance = m_variation.varying == Varying::Light ||
-                                 m_variation.varying == Varying::Object || !varying;
+  const bool keeps_reflectance =
+      m_variation.varying == Varying::Light || m_variation.varying == Varying::Object || !varying;
   if (keeps_light)
     m_terms.push_back(m_light);
   const Light& light = m_scene.light();
   const wavelet::RotatedReflectance reflectance =
       m_scene.material_of(point.hit.object)
-          .reflectance(
-              shading_point(light.to_light(point.hit.normal), light.to_light(point.wo)));
+          .reflectance(shading_point(light.to_light(point.hit.normal), light.to_light(point.wo)));
   wavelet::Tree tree = m_projection.make(m_terms, keeps_reflectance ? &reflectance : nullptr);
   if (!varying)
     return constant(tree.mean);

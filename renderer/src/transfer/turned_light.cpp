@@ -20,9 +20,8 @@ Eigen::Matrix3f turn_of(const Eigen::Vector3d& yaw_pitch_roll) {
 }
 
 TurnedLight::TurnedLight(const Light& light, int resolution)
-    : m_resolution(resolution),
-      m_level(probe::turning_level(
-          light.map(std::max(std::min(4 * resolution, side_max), resolution)))) {
+    : m_resolution(resolution), m_level(probe::turning_level(light.map(
+                                    std::max(std::min(4 * resolution, side_max), resolution)))) {
   for (int axis = 0; axis < 3; ++axis)
     m_placed.col(axis) = light.to_world(Vec3::Unit(axis));
 }

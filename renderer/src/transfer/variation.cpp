@@ -46,10 +46,14 @@ int object_index(const SceneDescription& scene, const std::string& name) {
 std::string variation_text(const SceneDescription& scene, const Variation& variation) {
   const auto index = static_cast<std::size_t>(std::max(variation.index, 0));
   switch (variation.varying) {
-  case Varying::Light: return "light";
-  case Varying::View: return "view";
-  case Varying::Object: return object_prefix + std::to_string(index);
-  case Varying::Material: break;
+  case Varying::Light:
+    return "light";
+  case Varying::View:
+    return "view";
+  case Varying::Object:
+    return object_prefix + std::to_string(index);
+  case Varying::Material:
+    break;
   }
   return material_prefix + scene.materials[index].name;
 }
@@ -64,8 +68,7 @@ Variation variation_from_text(const SceneDescription& scene, const std::string& 
   if (begins_with(text, material_prefix))
     return {Varying::Material,
             material_index(scene, text.substr(std::string(material_prefix).size()))};
-  throw std::invalid_argument("'" + text +
-                              "' is none of light, object:NAME, material:NAME, view");
+  throw std::invalid_argument("'" + text + "' is none of light, object:NAME, material:NAME, view");
 }
 
 } // namespace haarlight::renderer
