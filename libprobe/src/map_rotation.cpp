@@ -3,6 +3,7 @@
 #include "point_kernels.h"
 
 #include <wavelet/lanes.h>
+#include <wavelet/parallel.h>
 #include <wavelet/sphere_map.h>
 
 #include <algorithm>
@@ -50,6 +51,16 @@ Float4 load(const float* values) {
   return result;
 }
 
+/// The same frame all over, at places in the pixel as above.
+std::vector<Look> looks_of_frame(const Frame& frame, int count) {
+  const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
+  std::vector<Look> looks;
+  for (int k = 0; k < count; ++k)
+    looks.push_back({frame, Vec2(fraction(0.5 + k * 0.7548776662466927),
+                                 fraction(0.5 + k * 0.5698402909980532))});
+  return looks;
+}
+
 /// Bilinear look-ups in a level, whose border holds what lies beyond the folded edges of the
 /// square.
 class Sampler {
@@ -75,12 +86,12 @@ private:
   std::size_t m_row;
 };
 
-/// Makes the rows of one cell's map; what it needs for a row is allocated once.
+/// Makes the rows of one map; what it needs for a row is allocated once.
 class RowMaker {
 public:
-  RowMaker(const WorldLevel& level, const MapOptions& options, int column, int row)
-      : m_size(options.size), m_level_size(level.size), m_sampler(level),
-        m_looks(looks_of_cell(options, column, row)),
+  /// @param looks must outlive this
+  RowMaker(const WorldLevel& level, int size, const std::vector<Look>& looks)
+      : m_size(size), m_level_size(level.size), m_sampler(level), m_looks(looks),
         m_points((m_size + point_step - 1) / point_step * point_step),
         m_columns(static_cast<std::size_t>(m_points)), m_rows(m_columns.size()),
         m_sums(m_columns.size()) {}
@@ -95,8 +106,6 @@ public:
       map.set(x, y, Rgb(mean[0], mean[1], mean[2]));
     }
   }
-
-  const std::vector<Look>& looks() const { return m_looks; }
 
 private:
   struct Sum {
@@ -116,7 +125,7 @@ private:
   int m_size;
   int m_level_size;
   Sampler m_sampler;
-  std::vector<Look> m_looks;
+  const std::vector<Look>& m_looks;
   int m_points;
   std::vector<float> m_columns;
   std::vector<float> m_rows;
@@ -169,10 +178,28 @@ int matching_level_size(const MapOptions& options, int full_size) {
 
 wavelet::Map rotated_map(const WorldLevel& level, const MapOptions& options, int column, int row) {
   wavelet::Map map(options.size);
-  RowMaker maker(level, options, column, row);
+  const std::vector<Look> looks = looks_of_cell(options, column, row);
+  RowMaker maker(level, options.size, looks);
   for (int y = 0; y < map.size; ++y)
     maker.make(map, y);
-  add_lights(map, level, maker.looks());
+  add_lights(map, level, looks);
+  return map;
+}
+
+WorldLevel turning_level(const wavelet::Map& world) {
+  return make_level(world, world.size, world.size);
+}
+
+wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size) {
+  wavelet::Map map(size);
+  const int along = std::max(2, (level.size + size - 1) / size);
+  const std::vector<Look> looks = looks_of_frame(frame, along * along);
+  parallel_ranges(static_cast<std::size_t>(size), 4, [&](std::size_t begin, std::size_t end) {
+    RowMaker maker(level, size, looks);
+    for (std::size_t y = begin; y < end; ++y)
+      maker.make(map, static_cast<int>(y));
+  });
+  add_lights(map, level, {looks.front()});
   return map;
 }
 

@@ -7,6 +7,7 @@
 #include <wavelet/error.h>
 #include <wavelet/input_file.h>
 
+#include <algorithm>
 #include <map>
 
 namespace haarlight::renderer {
@@ -134,6 +135,19 @@ std::vector<MaterialDescription> read_materials(const SceneNode& node, const Fol
   return materials;
 }
 
+std::vector<std::string> read_object_names(const SceneNode& node) {
+  std::vector<std::string> names;
+  for (const SceneNode& element : node.elements()) {
+    const auto name = element.find("name");
+    const std::string text = name ? name->text() : "";
+    const auto same = std::find(names.begin(), names.end(), text);
+    if (!text.empty() && same != names.end())
+      name->fail("is the name of objects[" + std::to_string(same - names.begin()) + "] already");
+    names.push_back(text);
+  }
+  return names;
+}
+
 std::vector<ObjectDescription> read_objects(const SceneNode& node,
                                             const std::vector<std::string>& materials) {
   if (!node.is_array())
@@ -172,6 +186,7 @@ SceneDescription load_scene(const std::string& path) {
   scene.light = read_light(root.at("light"), folder);
   scene.materials = read_materials(root.at("materials"), folder);
   scene.objects = read_objects(root.at("objects"), root.at("materials").keys());
+  scene.object_names = read_object_names(root.at("objects"));
   return scene;
 }
 

@@ -137,7 +137,7 @@ Transform read_transform(const SceneNode& node) {
 
 ObjectDescription read_object(const SceneNode& node) {
   const ShapeReader& reader = reader_of(node.at("type"));
-  Names keys = {"type", "material", "transform"};
+  Names keys = {"type", "material", "transform", "name"};
   keys.insert(keys.end(), reader.keys.begin(), reader.keys.end());
   node.allow(keys);
   ObjectDescription object;

@@ -48,9 +48,7 @@ Provenance provenance_of(const SceneDescription& scene, const RenderOptions& opt
   Provenance result;
   result.set("version", version_text());
   result.set("scene", base_name(scene.path) + " " + scene.hash);
-  int number = 0;
-  for (const std::string& file : sources_of(scene))
-    result.set("source " + std::to_string(++number), base_name(file) + " " + file_hash(file));
+  set_sources(scene, result);
   result.set("sampler", sampler_name(options.sampler));
   result.set("estimator", estimator_name(options.estimator));
   result.set("points", options.points == Points::Sobol ? "sobol" : "random");
@@ -65,6 +63,12 @@ double nanoseconds_per(double seconds, std::uint64_t count) {
 }
 
 } // namespace
+
+void set_sources(const SceneDescription& scene, Provenance& provenance) {
+  int number = 0;
+  for (const std::string& file : sources_of(scene))
+    provenance.set("source " + std::to_string(++number), base_name(file) + " " + file_hash(file));
+}
 
 void write_film_exr(const std::string& path, const RenderResult& result,
                     const SceneDescription& scene, const RenderOptions& options,

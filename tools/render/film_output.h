@@ -3,12 +3,16 @@
 
 #include <renderer/render.h>
 #include <support/report.h>
+#include <wavelet/provenance.h>
 
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace haarlight::tool {
+
+/// Adds every file that a scene names, with its hash. @throws Error(Input)
+void set_sources(const renderer::SceneDescription& scene, Provenance& provenance);
 
 /// Writes the film as EXR: R, G, B, the normal N.X N.Y N.Z, pdf_sum, variance, samples; the
 /// attribute haarlight:provenance names scene, sources (each with its hash) and options,

@@ -28,10 +28,10 @@ void set_path(std::string& path, const std::string& word) {
 
 } // namespace
 
-Tool::Tool(std::string name, const std::string& description)
-    : m_name(std::move(name)), m_parser(std::make_unique<Parser>()) {
-  m_parser->app.name(m_name);
-  m_parser->app.description(m_name + ": " + description);
+Tool::Tool(const std::string& name, const std::string& description)
+    : m_name(name.substr(0, name.find(' '))), m_usage(name), m_parser(std::make_unique<Parser>()) {
+  m_parser->app.name(m_usage);
+  m_parser->app.description(m_usage + ": " + description);
   m_parser->app.set_help_flag("-h,--help", "Print this help and exit");
   m_parser->app.set_version_flag("--version", version_line(m_name), "Print the version and exit");
   flag(m_quiet, "-q,--quiet", "No notes and no progress on stderr");
@@ -107,6 +107,10 @@ void Tool::offer_json() { flag(m_json, "--json", "Print results as one JSON obje
 
 bool Tool::given(const std::string& name) const { return m_parser->app.count(name) > 0; }
 
+bool Tool::knows(const std::string& name) const {
+  return m_parser->app.get_option_no_throw(name) != nullptr;
+}
+
 /// Nothing if the command line is right, else the exit code.
 std::optional<int> Tool::parse(int argc, const char* const* argv) {
   CLI::App& app = m_parser->app;
@@ -118,7 +122,7 @@ std::optional<int> Tool::parse(int argc, const char* const* argv) {
   } catch (const CLI::CallForVersion&) {
     return guarded([&] { return print(version_line(m_name) + '\n'), exit_ok; });
   } catch (const CLI::ParseError& error) {
-    return complain(exit_usage, std::string(error.what()) + " (see " + m_name + " --help)");
+    return complain(exit_usage, std::string(error.what()) + " (see " + m_usage + " --help)");
   }
 }
 

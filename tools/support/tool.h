@@ -38,7 +38,8 @@ public:
 
 class Tool {
 public:
-  Tool(std::string name, const std::string& description);
+  /// @param name of the program, and behind a blank that of its command if it has several
+  Tool(const std::string& name, const std::string& description);
   ~Tool();
   Tool(const Tool&) = delete;
   Tool& operator=(const Tool&) = delete;
@@ -105,6 +106,7 @@ public:
   // What a body may ask and say.
   bool
   given(const std::string& name) const; ///< the option, as in "--size", was on the command line
+  bool knows(const std::string& name) const; ///< there is such an option
   bool quiet() const { return m_quiet; }
   bool verbose() const { return m_verbose; }
   bool json() const { return m_json; }
@@ -135,6 +137,7 @@ private:
   int complain(int code, const std::string& message) const;
 
   std::string m_name;
+  std::string m_usage; ///< what --help is asked of: the name, with the command
   std::unique_ptr<Parser> m_parser;
   mutable std::vector<std::string> m_notes;
   bool m_quiet = false;

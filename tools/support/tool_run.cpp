@@ -43,7 +43,7 @@ int Tool::guarded(const std::function<int()>& body) const {
   try {
     return body();
   } catch (const UsageError& error) {
-    return complain(exit_usage, std::string(error.what()) + " (see " + m_name + " --help)");
+    return complain(exit_usage, std::string(error.what()) + " (see " + m_usage + " --help)");
   } catch (const Error& error) {
     return complain(error.kind() == ErrorKind::Input ? exit_input : exit_output, error.what());
   } catch (const std::bad_alloc&) {

@@ -51,6 +51,15 @@ struct WorldLevel {
   std::vector<Light> lights;
 };
 
+/// A world map made ready to be turned again and again.
+WorldLevel turning_level(const wavelet::Map& world);
+
+/// A level in another frame: the pixel at direction ω averages what the level's map shows at
+/// frame.to_outer(ω). Peaks keep their energy and are spread over the nearest pixels; all else is
+/// sampled once for each of the level's pixels, and 2 × 2 times at least.
+/// @param size pixels along a side, a power of two ≥ 4
+wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size);
+
 /// The maps of a probe. make() is the world map, or the map of one cell of ω_r, averaged over the
 /// cell. The latter are made from the world map averaged down to their resolution, so that memory
 /// stays at that and one map for each thread.

@@ -67,6 +67,8 @@ struct SceneDescription {
   LightDescription light;
   std::vector<MaterialDescription> materials; ///< in the file's order
   std::vector<ObjectDescription> objects;     ///< in the file's order, as hits number them
+  std::vector<std::string> object_names; ///< of the objects in order, all different but for empty
+                                         ///< ones; may be shorter than `objects`
 };
 
 } // namespace haarlight::renderer

@@ -1,0 +1,93 @@
+// Transfer that is all but the reflectance: another material, or another place to look from.
+#include <renderer/relight.h>
+
+#include <renderer/render.h>
+
+#include <wavelet/adaptive_product.h>
+#include <wavelet/parallel.h>
+#include <wavelet/sphere_map.h>
+
+#include <deque>
+
+namespace haarlight::renderer {
+namespace {
+
+class ReflectanceRelighter : public Relighter {
+public:
+  ReflectanceRelighter(const Transfer& transfer, const SceneDescription& scene,
+                       const Variation& variation)
+      : m_transfer(transfer), m_scene(scene), m_variation(variation),
+        m_light(scene.light, SourceLookups().probe),
+        m_points(film_points(scene, transfer.width(), transfer.height())) {
+    m_options.variance_bound = default_variance_bound(Estimator::Bidirectional);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+      if (variation.varying == Varying::View || static_cast<int>(i) == variation.index)
+        load(i);
+  }
+
+  Film make(const Change& change) override {
+    Film film(m_transfer.width(), m_transfer.height());
+    parallel_ranges(film.count(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        film.set_color(i, radiance(m_points[i], m_transfer.trees()[i], change));
+    });
+    return film;
+  }
+
+private:
+  void load(std::size_t index) {
+    m_materials.resize(m_scene.materials.size(), nullptr);
+    m_loaded.emplace_back(m_scene.materials[index], SourceLookups().brdf);
+    m_loaded.back().need_trees();
+    m_materials[index] = &m_loaded.back();
+  }
+
+  Rgb radiance(const FilmPoint& point, const wavelet::TreeView& tree, const Change& change) const {
+    const Material* material = point.hit.object < 0 ? nullptr : material_of(point.hit.object);
+    if (material == nullptr)
+      return tree.mean * wavelet::sphere_area;
+    const Vec3 wo = to_viewer(point, change);
+    if (!(point.hit.normal.dot(wo) > 0))
+      return Rgb::Zero();
+    wavelet::AdaptiveProduct product(tree);
+    const ShadingPoint shaded =
+        shading_point(m_light.to_light(point.hit.normal), m_light.to_light(wo));
+    return product.build(material->reflectance(shaded), m_options).integral() *
+           wavelet::sphere_area;
+  }
+
+  /// Nothing for pixels that the variation leaves as they are.
+  const Material* material_of(int object) const {
+    const int material = m_scene.objects[static_cast<std::size_t>(object)].material;
+    return m_materials[static_cast<std::size_t>(material)];
+  }
+
+  /// Parallel rays stay so: they turn to the eye's new place as seen from what it looks at.
+  Vec3 to_viewer(const FilmPoint& point, const Change& change) const {
+    if (m_variation.varying != Varying::View || change.move.isZero())
+      return point.wo;
+    const CameraDescription& camera = m_scene.camera;
+    const Vec3 eye = camera.from + change.move;
+    const bool parallel = camera.projection == Projection::Orthographic;
+    return (eye - (parallel ? camera.to : point.hit.position)).normalized();
+  }
+
+  const Transfer& m_transfer;
+  const SceneDescription& m_scene;
+  Variation m_variation;
+  Light m_light;
+  std::vector<FilmPoint> m_points;
+  wavelet::AdaptiveOptions m_options;
+  std::deque<Material> m_loaded;
+  std::vector<const Material*> m_materials; ///< by index; null for those that stay
+};
+
+} // namespace
+
+std::unique_ptr<Relighter> reflectance_relighter(const Transfer& transfer,
+                                                 const SceneDescription& scene,
+                                                 const Variation& variation) {
+  return std::make_unique<ReflectanceRelighter>(transfer, scene, variation);
+}
+
+} // namespace haarlight::renderer
