@@ -48,7 +48,7 @@ void declare(tool::Tool& app, Options& options) {
 void require_writable(const std::string& path) { const OutputFile trial(path); }
 
 /// Refuses contradictions and unwritable outputs before any work is done.
-void check(Options& options) {
+void check(const tool::Tool& app, Options& options) {
   if (const auto problem = problem_of(options.render.sampler, options.render.estimator))
     throw tool::UsageError(*problem);
   tool::check_integrator(app, options.integrator, options.render);
@@ -61,7 +61,7 @@ void check(Options& options) {
 }
 
 int render_scene(const tool::Tool& app, Options& options) {
-  check(options);
+  check(app, options);
   SceneDescription description = load_scene(options.scene);
   if (!options.size.empty())
     tool::set_film_size(options.size, description);

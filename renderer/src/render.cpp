@@ -35,10 +35,6 @@ private:
   LightSamples m_light;
 };
 
-/// What products are refined to where their own integral makes the picture, which then has no noise
-/// but this error.
-constexpr float integral_variance_bound = 0.005F;
-
 SamplerOptions sampling_of(const RenderOptions& options) {
   SamplerOptions result = options.sampling;
   result.count = static_cast<std::size_t>(options.spp);

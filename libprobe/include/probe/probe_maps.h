@@ -27,8 +27,8 @@ Frame light_frame(int i, int j, int orientations);
 /// takes frame.n to `w`. Entries average over their cell in frames so made.
 Frame carried_frame(const Frame& frame, const Vec3& w);
 
-/// Of a world-frame map the power of two that loses nothing, at least 0.8 × the probe's width, from
-/// 512 to 2048; 128 for the maps of a table.
+/// Of a world-frame map a power of two, at least 3.2 × the probe's width so that few pixels lie
+/// across the edges of the probe's, within 512 and 2048; 128 for the maps of a table.
 int default_map_size(const Probe& probe, int orientations);
 
 /// The world-frame map: pixel (x, y) is the average over its square of the probe's radiance, local

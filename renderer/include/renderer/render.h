@@ -16,6 +16,10 @@
 
 namespace haarlight::renderer {
 
+/// What products are refined to where their own integral makes the picture, which then has no noise
+/// but this error.
+inline constexpr float integral_variance_bound = 0.005F;
+
 /// How samples become radiance.
 enum class Estimator {
   Unbiased,      ///< 1/N Σ f_r L v cos / p

@@ -19,7 +19,7 @@ public:
       : m_transfer(transfer), m_scene(scene), m_variation(variation),
         m_light(scene.light, SourceLookups().probe),
         m_points(film_points(scene, transfer.width(), transfer.height())) {
-    m_options.variance_bound = default_variance_bound(Estimator::Bidirectional);
+    m_options.variance_bound = integral_variance_bound;
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
       if (variation.varying == Varying::View || static_cast<int>(i) == variation.index)
         load(i);
