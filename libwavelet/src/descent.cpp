@@ -1,3 +1,4 @@
+#include <wavelet/cpu_clones.h>
 #include <wavelet/descent.h>
 
 #include <array>
@@ -33,7 +34,8 @@ void walk_all(TreeDensity* densities, Descent* descents, std::size_t count, Choo
 
 } // namespace
 
-void descend_tree(std::span<TreeDensity> densities, std::span<Descent> descents) {
+HAARLIGHT_CPU_CLONES void descend_tree(std::span<TreeDensity> densities,
+                                       std::span<Descent> descents) {
   for (std::size_t begin = 0; begin < descents.size(); begin += width) {
     Descent* d = descents.data() + begin;
     TreeDensity* density = densities.data() + begin;
@@ -44,8 +46,8 @@ void descend_tree(std::span<TreeDensity> densities, std::span<Descent> descents)
   }
 }
 
-void follow_tree(std::span<TreeDensity> densities, std::span<const Vec2> points,
-                 std::span<Descent> descents) {
+HAARLIGHT_CPU_CLONES void follow_tree(std::span<TreeDensity> densities,
+                                      std::span<const Vec2> points, std::span<Descent> descents) {
   for (std::size_t begin = 0; begin < descents.size(); begin += width) {
     Descent* d = descents.data() + begin;
     TreeDensity* density = densities.data() + begin;

@@ -1,3 +1,4 @@
+#include <wavelet/cpu_clones.h>
 #include <wavelet/product_tree.h>
 
 #include <array>
@@ -63,7 +64,8 @@ Descent ProductTree::sample(float u1, float u2) const {
   return d;
 }
 
-void ProductTree::sample(std::span<const Vec2> points, std::span<Descent> out) const {
+HAARLIGHT_CPU_CLONES void ProductTree::sample(std::span<const Vec2> points,
+                                              std::span<Descent> out) const {
   std::array<TreeDensity, 64> densities;
   for (std::size_t begin = 0; begin < out.size(); begin += densities.size()) {
     const std::span<Descent> batch =
