@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace haarlight::renderer::detail {
 
@@ -26,6 +27,11 @@ constexpr std::array<std::array<float, 2>, 5> ways = {
 /// By how much the best of them is turned to either side, in turn.
 constexpr std::array<float, 5> turns = {0.4F, 0.2F, 0.1F, 0.05F, 0.025F};
 
+/// What a map stretches vectors by at most; exact if it stretches all alike.
+double stretch_bound(const Eigen::Matrix3d& linear) {
+  return std::sqrt((linear.transpose() * linear).cwiseAbs().rowwise().sum().maxCoeff());
+}
+
 } // namespace
 
 Vec2 net_point(const SquarePlace& square, std::size_t index) {
@@ -45,6 +51,27 @@ SolidRays::SolidRays(const Solid& solid, const Eigen::Vector3d& origin, const Li
       m_bounds(Cap::around_ball(solid.center - origin, solid.radius)),
       m_to_shape(solid.to_world.offset - origin), m_object_origin(solid.to_object.point(origin)) {
   m_bounds.axis = light.to_light((solid.center - origin).normalized().cast<float>());
+  if (solid.kind == SolidKind::Torus)
+    find_tube(origin);
+}
+
+/// So that what is seen through the ring is told apart from it.
+void SolidRays::find_tube(const Eigen::Vector3d& origin) {
+  constexpr int balls = 48;
+  constexpr double half_step = 180.0 / balls;
+  // A ball reaches from its centre to the tube's surface half a step along the ring.
+  const double along = 2 * (1 + m_solid.tube) * sine_cosine_degrees(half_step / 2).sine;
+  const double outer = std::hypot(m_solid.tube, along) * stretch_bound(m_solid.to_world.linear);
+  const double inner = m_solid.tube / stretch_bound(m_solid.to_object.linear);
+  for (int i = 0; i < balls; ++i) {
+    const SineCosine angle = sine_cosine_degrees(2 * half_step * i);
+    const Eigen::Vector3d middle = m_solid.to_world.point({angle.cosine, angle.sine, 0}) - origin;
+    const Vec3 axis = m_light.to_light(middle.normalized().cast<float>());
+    m_tube.push_back(Cap::around_ball(middle, outer));
+    m_tube.back().axis = axis;
+    m_core.push_back(Cap::around_ball(middle, inner));
+    m_core.back().axis = axis;
+  }
 }
 
 Eigen::Vector3d SolidRays::object_direction(const Vec3& direction) const {
@@ -61,7 +88,10 @@ double SolidRays::clearance(const Vec3& normal) const {
 }
 
 bool SolidRays::all_miss(const SquareCap& cap) const {
-  if (m_bounds.classify(cap) == RegionPart::Outside)
+  const auto is_beside = [&](const Cap& bounds) {
+    return bounds.classify(cap) == RegionPart::Outside;
+  };
+  if (is_beside(m_bounds) || (!m_tube.empty() && std::ranges::all_of(m_tube, is_beside)))
     return true;
   const Vec3 aside = m_bounds.axis - m_bounds.axis.dot(cap.centre) * cap.centre;
   const float distance = aside.norm();
@@ -92,39 +122,16 @@ bool SolidRays::all_miss(const SquareCap& cap) const {
   return false;
 }
 
-template <class Meets>
-bool SolidRays::corners_meet(const SquareCap& cap, const Meets& meets) const {
+bool SolidRays::all_meet(const SquareCap& cap) const {
+  if (m_solid.kind == SolidKind::Torus) // which is not convex
+    return std::ranges::any_of(
+        m_core, [&](const Cap& core) { return core.classify(cap) == RegionPart::Inside; });
+  if (cap.cosine < least_cosine)
+    return false;
   const Frame frame = frame_about(cap.centre);
   const float reach = cap.sine / cap.cosine;
   return std::ranges::all_of(corners, [&](const auto& corner) {
-    return meets(object_direction(frame.n + reach * (corner[0] * frame.t + corner[1] * frame.b)));
-  });
-}
-
-bool SolidRays::all_meet(const SquareCap& cap) const {
-  if (cap.cosine < least_cosine)
-    return false;
-  if (m_solid.kind == SolidKind::Torus)
-    return tube_meets(cap);
-  return corners_meet(cap, [&](const Eigen::Vector3d& direction) {
-    return canonical_distance(m_solid, m_object_origin, direction) < no_hit;
-  });
-}
-
-/// Of a torus, which is not convex: whether all rays meet a ball in it where the middle one enters.
-bool SolidRays::tube_meets(const SquareCap& cap) const {
-  const Eigen::Vector3d middle = object_direction(cap.centre);
-  const double entry = canonical_distance(m_solid, m_object_origin, middle);
-  if (!(entry < no_hit))
-    return false;
-  const Eigen::Vector3d p = m_object_origin + entry * middle;
-  const double around = p.head<2>().norm();
-  const Eigen::Vector3d to_ball =
-      Eigen::Vector3d(p.x() / around, p.y() / around, 0) - m_object_origin;
-  const double radius_squared = m_solid.tube * m_solid.tube;
-  return corners_meet(cap, [&](const Eigen::Vector3d& direction) {
-    const double along = to_ball.dot(direction) / direction.squaredNorm();
-    return along > 0 && (to_ball - along * direction).squaredNorm() < radius_squared;
+    return meet(frame.n + reach * (corner[0] * frame.t + corner[1] * frame.b));
   });
 }
 

@@ -10,6 +10,7 @@
 #include <wavelet/square_cap.h>
 
 #include <cstddef>
+#include <vector>
 
 namespace haarlight::renderer::detail {
 
@@ -34,15 +35,14 @@ private:
   /// How far the whole shape lies beyond a plane through the origin of the rays, on the side that
   /// its unit normal points to; negative if not all of it does.
   double clearance(const Vec3& normal) const;
-  /// Whether rays along the edges of a pyramid around the cap meet something convex.
-  template <class Meets>
-  bool corners_meet(const wavelet::SquareCap& cap, const Meets& meets) const;
-  bool tube_meets(const wavelet::SquareCap& cap) const;
+  void find_tube(const Eigen::Vector3d& origin);
   Eigen::Vector3d object_direction(const Vec3& direction) const;
 
   const Light& m_light;
   const Solid& m_solid;
   Cap m_bounds;                    ///< around the shape's bounding sphere
+  std::vector<Cap> m_tube;         ///< of a torus: around balls that hold all of its tube …
+  std::vector<Cap> m_core;         ///< … and around such as lie within it
   Eigen::Vector3d m_to_shape;      ///< from the origin to the shape's own origin
   Eigen::Vector3d m_object_origin; ///< the rays', as the shape sees it
 };
