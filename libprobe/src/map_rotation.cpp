@@ -192,7 +192,7 @@ WorldLevel turning_level(const wavelet::Map& world) {
 
 wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size) {
   wavelet::Map map(size);
-  const int along = std::max(2, (level.size + size - 1) / size);
+  const int along = 2 * std::max(1, (level.size + size - 1) / size);
   const std::vector<Look> looks = looks_of_frame(frame, along * along);
   parallel_ranges(static_cast<std::size_t>(size), 4, [&](std::size_t begin, std::size_t end) {
     RowMaker maker(level, size, looks);

@@ -2,6 +2,7 @@
 
 #include <renderer/relight.h>
 #include <renderer/render.h>
+#include <renderer/turned_light.h>
 
 #include <wavelet/error.h>
 #include <wavelet/input_file.h>
@@ -169,6 +170,23 @@ TEST_CASE("a view that varies starts as the picture, and moves highlights") {
   change.move = Vec3(0, 0, -20); // behind: the spheres turn their backs
   const Film behind = relit.make(change);
   CHECK((behind.color(behind.index(5, 7)) == 0).all());
+}
+
+TEST_CASE("a light keeps its energy however it turns, and its map where it does not") {
+  const SceneDescription scene = small_scene();
+  const Light light(scene.light, SourceLookups().probe);
+  const TurnedLight turned(light, 32);
+  const wavelet::Map map = light.map(32);
+  const double mean = wavelet::map_mean(map).mean();
+  for (const double angle : {0.0, 33.0, 170.0}) {
+    const wavelet::Map made = turned.map(turn_of(Eigen::Vector3d(angle, -angle, 2 * angle)));
+    CHECK(wavelet::map_mean(made).mean() == Approx(mean).epsilon(0.005));
+  }
+  const wavelet::Map still = turned.map(turn_of(Eigen::Vector3d::Zero()));
+  double error = 0;
+  for (std::size_t i = 0; i < map.rgb.size(); ++i)
+    error += std::abs(static_cast<double>(still.rgb[i] - map.rgb[i]));
+  CHECK(error < 0.1 * 3 * mean * 32 * 32);
 }
 
 TEST_CASE("a transfer's bytes depend on the scene and the options alone") {

@@ -56,7 +56,7 @@ WorldLevel turning_level(const wavelet::Map& world);
 
 /// A level in another frame: the pixel at direction ω averages what the level's map shows at
 /// frame.to_outer(ω). Peaks keep their energy and are spread over the nearest pixels; all else is
-/// sampled once for each of the level's pixels, and 2 × 2 times at least.
+/// sampled 2 × 2 times for each of the level's pixels or each of the map's, whichever are smaller.
 /// @param size pixels along a side, a power of two ≥ 4
 wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size);
 

@@ -42,9 +42,10 @@ std::vector<FilmPoint> film_points(const SceneDescription& scene, int width, int
   std::vector<FilmPoint> points(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   parallel_ranges(points.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto x = static_cast<float>(i % static_cast<std::size_t>(width));
-      const auto y = static_cast<float>(i / static_cast<std::size_t>(width));
-      points[i] = find_point(shapes, camera.generate_ray(x + 0.5F, y + 0.5F));
+      const std::size_t x = i % static_cast<std::size_t>(width);
+      const std::size_t y = i / static_cast<std::size_t>(width);
+      points[i] = find_point(
+          shapes, camera.generate_ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F));
     }
   });
   return points;

@@ -131,8 +131,9 @@ private:
   Rgb radiance(std::size_t pixel, const MovedObject& moved, const Camera& camera,
                ObjectShader& shader) const {
     const auto width = static_cast<std::size_t>(m_transfer.width());
-    Ray ray = camera.generate_ray(static_cast<float>(pixel % width) + 0.5F,
-                                  static_cast<float>(pixel / width) + 0.5F);
+    const std::size_t x = pixel % width;
+    const std::size_t y = pixel / width;
+    Ray ray = camera.generate_ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
     const FilmPoint& point = m_points[pixel];
     ray.t_max = std::min(ray.t_max, point.hit.t);
     Hit hit;
