@@ -17,15 +17,18 @@ namespace {
 
 class ProductSampler : public ProductTreeSampler {
 public:
-  ProductSampler(const Light& light, const wavelet::AdaptiveOptions& options)
-      : m_light(light), m_builder(light.tree()), m_options(options) {}
+  /// @param shadowed options where something may be in the way
+  ProductSampler(const Light& light, const wavelet::AdaptiveOptions& options,
+                 const wavelet::AdaptiveOptions& shadowed)
+      : m_light(light), m_builder(light.tree()), m_options(options), m_shadowed(shadowed) {}
 
   void forget() override { m_follows = false; }
 
   void prepare(const ShadingPoint& point, const Material& material) override {
     const wavelet::RotatedReflectance reflectance = material.reflectance(point);
-    m_product = m_follows ? &m_builder.follow(reflectance, m_options, point.occlusion)
-                          : &m_builder.build(reflectance, m_options, point.occlusion);
+    const wavelet::AdaptiveOptions& options = point.occlusion != nullptr ? m_shadowed : m_options;
+    m_product = m_follows ? &m_builder.follow(reflectance, options, point.occlusion)
+                          : &m_builder.build(reflectance, options, point.occlusion);
     m_follows = true;
     m_mixes = point.occlusion != nullptr && !m_product->empty();
   }
@@ -68,11 +71,16 @@ private:
   const Light& m_light;
   wavelet::AdaptiveProduct m_builder;
   wavelet::AdaptiveOptions m_options;
+  wavelet::AdaptiveOptions m_shadowed;
   bool m_follows = false;
   bool m_mixes = false;
   std::vector<Vec2> m_points;
   std::vector<probe::LightSample> m_samples;
 };
+
+/// Where shadows add about ten times the variance that stays in the open, bounds are so much higher:
+/// they go by its square root.
+constexpr float shadow_ratio = 3;
 
 class ProductFactory : public SamplerFactory {
 public:
@@ -80,10 +88,13 @@ public:
       : m_light(light), m_options(options) {}
 
   std::unique_ptr<Sampler> make(std::size_t count) const override {
-    wavelet::AdaptiveOptions options = m_options;
-    if (options.variance_bound == 0)
-      options.variance_bound = default_variance_bound(count);
-    return std::make_unique<ProductSampler>(m_light, options);
+    wavelet::AdaptiveOptions open = m_options;
+    wavelet::AdaptiveOptions shadowed = m_options;
+    if (m_options.variance_bound == 0) {
+      open.variance_bound = default_variance_bound(count);
+      shadowed.variance_bound = shadow_ratio * open.variance_bound;
+    }
+    return std::make_unique<ProductSampler>(m_light, open, shadowed);
   }
 
 private:
