@@ -83,7 +83,8 @@ int compare_samplers(const tool::Tool& app, Plan& plan) {
   require_writable(plan.folder);
   make_trees(plan, Cache(app, plan.folder + "/cache", plan.cache), collection);
   const std::vector<PairResult> pairs = measure_all(app, plan, collection);
-  const std::vector<Verdict> verdicts = verdicts_of(rows_of(pairs));
+  const std::vector<Row> rows = rows_of(pairs); // verdicts point into them
+  const std::vector<Verdict> verdicts = verdicts_of(rows);
   write_text(plan.folder + "/report.html", page_html(plan, pairs, verdicts));
   app.print(describe(verdicts));
   return tool::exit_ok;

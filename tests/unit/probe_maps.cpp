@@ -48,13 +48,13 @@ TEST_CASE("Default sizes lose nothing", "[maps]") {
   const auto size_for = [](int width) {
     return default_map_size(Probe(Image(width, width), Mapping::Angular), 1);
   };
-  CHECK(size_for(1000) == 1024);
-  CHECK(size_for(900) == 1024);
-  CHECK(size_for(256) == 512);
-  CHECK(size_for(640) == 512);
+  CHECK(size_for(1000) == 2048);
+  CHECK(size_for(900) == 2048);
+  CHECK(size_for(256) == 1024);
+  CHECK(size_for(640) == 2048);
   CHECK(size_for(1500) == 2048);
   CHECK(size_for(4000) == 2048);
-  CHECK(default_map_size(Probe(Image(1024, 512), Mapping::LatLong), 1) == 1024);
+  CHECK(default_map_size(Probe(Image(1024, 512), Mapping::LatLong), 1) == 2048);
   CHECK(default_map_size(Probe(Image(1000, 1000), Mapping::Angular), 64) == 128);
 }
 
