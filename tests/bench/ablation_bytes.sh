@@ -28,6 +28,7 @@ all_probes=${ALL_PROBES:-grace_probe rnl_probe studio_small_03_angular_256 venic
 light_limit=$((${LIGHT_MB:-40} * 1000000)) brdf_limit=$((${BRDF_MB:-5} * 1000000))
 source "$(dirname "${BASH_SOURCE[0]}")/ablation_lib.sh"
 ideal_options=(--product-variance 0.003 --product-leaves 65536)
+base_options=(--product-variance 0.03)
 
 # light PROBE SIZE TOLERANCE / brdf MATERIAL SIZE TOLERANCE: make trees, set `made`.
 light() {
@@ -61,6 +62,7 @@ load() {
 curve() {
   local variance
   load "$material" "$probe" "${@:2:4}"
+  case " ${*:6} " in *" --product-variance "*) ;; *) set -- "$@" "${base_options[@]}" ;; esac
   variance=$(relvar --sampler product "${@:6}")
   printf '| %s | %s | %s | %.0f | %.3g | %.1f |\n' "$1" "$(compute "$light_bytes / 1e6" %.2f)" \
     "$(compute "$brdf_bytes / 1e6" %.2f)" "$(field leaves_per_product "$work/out.json")" "$variance" \
@@ -73,7 +75,7 @@ curves() {
   mis=$(relvar --sampler mis)
   printf '\n%s under %s, mis %.3g:\n\n' "$material" "$probe" "$mis"
   printf '| | light, MB | BRDF, MB | leaves | variance | gain |\n|---|---|---|---|---|---|\n'
-  curve "defaults" 1024 0.0001 512 0.0005
+  curve "base" 1024 0.0001 512 0.0005
   curve "ideal" 1024 0 512 0 "${ideal_options[@]}"
   for tolerance in 0 0.00003 0.0003 0.001 0.003; do
     curve "light tolerance $tolerance" 1024 $tolerance 512 0.0005
@@ -110,7 +112,7 @@ kept_row() {
   load "$material" "$probe" 1024 0 512 0
   mis=$(relvar --sampler mis)
   ideal=$(relvar --sampler product "${ideal_options[@]}")
-  load "$material" "$probe" 1024 0.0001 512 0.0005
+  load "$material" "$probe" 0 0.0001 0 0.0005 # sizes as they are by default
   default=$(relvar --sampler product)
   fitting light "$probe" 1024 "$light_limit"
   light_fits=$fits
