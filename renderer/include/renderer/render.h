@@ -18,7 +18,7 @@ namespace haarlight::renderer {
 
 /// What products are refined to where their own integral makes the picture, which then has no noise
 /// but this error.
-inline constexpr float integral_variance_bound = 0.005F;
+inline constexpr float integral_variance_bound = 0.001F;
 
 /// How samples become radiance.
 enum class Estimator {
