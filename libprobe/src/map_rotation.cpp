@@ -55,6 +55,7 @@ Float4 load(const float* values) {
 std::vector<Look> looks_of_frame(const Frame& frame, int count) {
   const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
   std::vector<Look> looks;
+  looks.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k)
     looks.push_back({frame, Vec2(fraction(0.5 + k * 0.7548776662466927),
                                  fraction(0.5 + k * 0.5698402909980532))});

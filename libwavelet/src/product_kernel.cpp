@@ -105,8 +105,8 @@ void combine(Float4 floor, float area, Quadrants& quadrants) {
   const Float4 r = larger(br, zero + floor[0]) * luminance_lanes[0];
   const Float4 g = larger(bg, zero + floor[1]) * luminance_lanes[1];
   const Float4 b = larger(bb, zero + floor[2]) * luminance_lanes[2];
-  const auto density = [&](Float4 red, Float4 green, Float4 blue) {
-    return larger(lr * red + lg * green + lb * blue, zero);
+  const auto density = [x = lr, y = lg, z = lb, zero](Float4 red, Float4 green, Float4 blue) {
+    return larger(x * red + y * green + z * blue, zero);
   };
   const Int4 above = (Int4{1, 2, 4, 8} & static_cast<int>(quadrants.visible)) != 0;
   quadrants.density = select(above, density(r, g, b), zero);

@@ -78,8 +78,8 @@ private:
   std::vector<probe::LightSample> m_samples;
 };
 
-/// Where shadows add about ten times the variance that stays in the open, bounds are so much higher:
-/// they go by its square root.
+/// Where shadows add about ten times the variance that stays in the open, bounds are so much
+/// higher: they go by its square root.
 constexpr float shadow_ratio = 3;
 
 class ProductFactory : public SamplerFactory {

@@ -99,7 +99,7 @@ bool SolidRays::all_miss(const SquareCap& cap) const {
     return false;
   const Vec3 t = aside / distance;
   const Vec3 b = cap.centre.cross(t);
-  Vec2 best;
+  Vec2 best = Vec2::UnitX();
   double most = -no_hit;
   const auto try_way = [&](const Vec2& way) {
     const double found =
@@ -114,9 +114,10 @@ bool SolidRays::all_miss(const SquareCap& cap) const {
     if (try_way({way[0], way[1]}))
       return true;
   for (const float turn : turns) {
-    const Vec2 middle = best;
-    const Vec2 side = turn * Vec2(-middle.y(), middle.x());
-    if (try_way((middle + side).normalized()) || try_way((middle - side).normalized()))
+    const Vec2 side = turn * Vec2(-best.y(), best.x());
+    const Vec2 left = (best + side).normalized();
+    const Vec2 right = (best - side).normalized();
+    if (try_way(left) || try_way(right))
       return true;
   }
   return false;
