@@ -10,11 +10,8 @@ using namespace haarlight;
 using namespace haarlight::wavelet;
 
 TEST_CASE("points warped by a slope have its density, and quadrants its means") {
-  const auto [x, y] = GENERATE(table<float, float>({{0.0F, 0.0F},
-                                                    {0.5F, -0.25F},
-                                                    {-1.2F, 0.0F},
-                                                    {0.9F, 1.0F},
-                                                    {-0.001F, 1.9F}}));
+  const auto [x, y] = GENERATE(table<float, float>(
+      {{0.0F, 0.0F}, {0.5F, -0.25F}, {-1.2F, 0.0F}, {0.9F, 1.0F}, {-0.001F, 1.9F}}));
   const Slope slope = {x, y};
   constexpr int side = 400;
   std::array<double, 4> share = {};
@@ -34,8 +31,7 @@ TEST_CASE("points warped by a slope have its density, and quadrants its means") 
     const float s0 = (q & 1U) != 0 ? 0.5F : 0.0F;
     const float t0 = (q & 2U) != 0 ? 0.5F : 0.0F;
     for (const float s : {0.0F, 0.3F, 1.0F})
-      CHECK(mean * within.at(s, 0.7F) ==
-            Approx(slope.at(s0 + 0.5F * s, t0 + 0.35F)).margin(1e-5));
+      CHECK(mean * within.at(s, 0.7F) == Approx(slope.at(s0 + 0.5F * s, t0 + 0.35F)).margin(1e-5));
   }
 }
 
