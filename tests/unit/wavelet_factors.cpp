@@ -1,5 +1,6 @@
 #include "product_of.h"
 #include "random_map.h"
+#include "tree_views.h"
 
 #include <wavelet/compress.h>
 #include <wavelet/multiply.h>
@@ -36,13 +37,6 @@ std::vector<Tree> random_trees(std::size_t count, std::uint32_t seed) {
   return trees;
 }
 
-std::vector<TreeView> views_of(const std::vector<Tree>& trees) {
-  std::vector<TreeView> views;
-  for (const Tree& tree : trees)
-    views.push_back(tree.view());
-  return views;
-}
-
 /// The plain way: multiply pixels.
 std::vector<Eigen::Array3d> dense_product(const std::vector<TreeView>& trees, int level) {
   std::vector<Eigen::Array3d> result(std::size_t{1} << (2 * level), Eigen::Array3d::Ones());
@@ -69,9 +63,7 @@ public:
   void split(const FactorSquares& squares, const FactorQuadrants& out) const override {
     for (std::size_t i = 0; i < squares.count; ++i)
       for (unsigned q = 0; q < 4; ++q) {
-        const SquarePlace& s = squares.place[i];
-        out.mean[4 * i + q] =
-            average({s.level + 1, 2 * s.column + (q & 1U), 2 * s.row + (q >> 1U)});
+        out.mean[4 * i + q] = average(squares.place[i].quadrant(q));
         const float share = out.mean[4 * i + q][0];
         out.detail[4 * i + q] = share > 0 && share < 1 ? 0 : no_node;
       }

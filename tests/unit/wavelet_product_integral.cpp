@@ -1,6 +1,7 @@
 // Integrals of products of n functions, against pixels multiplied one by one.
 
 #include "random_map.h"
+#include "tree_views.h"
 
 #include <wavelet/compress.h>
 #include <wavelet/multiply.h>
@@ -32,13 +33,6 @@ std::vector<Tree> random_trees(std::size_t count, int size, unsigned seed) {
         compress_map(random_map(side, seed + static_cast<unsigned>(i)), options, report));
   }
   return trees;
-}
-
-std::vector<TreeView> views_of(const std::vector<Tree>& trees) {
-  std::vector<TreeView> views;
-  for (const Tree& tree : trees)
-    views.push_back(tree.view());
-  return views;
 }
 
 /// The integral, and that of the magnitude, which rounding errors are measured by.

@@ -19,6 +19,11 @@ struct SquarePlace {
   std::int32_t level = 0;
   std::uint32_t column = 0;
   std::uint32_t row = 0;
+
+  /// Quadrant q = qx + 2 qy.
+  SquarePlace quadrant(unsigned q) const {
+    return {level + 1, 2 * column + (q & 1U), 2 * row + (q >> 1U)};
+  }
 };
 
 /// Many squares as one factor sees them: square i has the average mean[slot[i]], and

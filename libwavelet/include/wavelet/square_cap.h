@@ -54,9 +54,7 @@ float positive_share_of(const SquarePlace& square, const Value& value) {
     return positive_share(values);
   float sum = 0;
   for (unsigned q = 0; q < 4; ++q)
-    sum += positive_share_of(
-        SquarePlace{square.level + 1, 2 * square.column + (q & 1U), 2 * square.row + (q >> 1U)},
-        value);
+    sum += positive_share_of(square.quadrant(q), value);
   return 0.25F * sum;
 }
 

@@ -40,10 +40,6 @@ float share_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
   return std::clamp(0.5F + 0.5F * inside / (half_width * bounds.sine), 0.0F, 1.0F);
 }
 
-SquarePlace quadrant(const SquarePlace& s, unsigned q) {
-  return {s.level + 1, 2 * s.column + (q & 1U), 2 * s.row + (q >> 1U)};
-}
-
 } // namespace
 
 HiddenShare::HiddenShare() {
@@ -52,7 +48,7 @@ HiddenShare::HiddenShare() {
     m_bounds.push_back(wavelet::square_cap(places[i]));
     if (places[i].level < kept_levels)
       for (unsigned q = 0; q < 4; ++q)
-        places.push_back(quadrant(places[i], q));
+        places.push_back(places[i].quadrant(q));
   }
 }
 

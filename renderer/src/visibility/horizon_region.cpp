@@ -14,10 +14,6 @@ constexpr int smooth_level = 6;
 /// How often squares that the horizon crosses are split for it.
 constexpr int horizon_refinements = 2;
 
-SquarePlace quadrant(const SquarePlace& square, unsigned q) {
-  return {square.level + 1, 2 * square.column + (q & 1U), 2 * square.row + (q >> 1U)};
-}
-
 /// max(0, n·ω) at the 2 × 2 Gauss points, averaged.
 float gauss_cosine(const Vec3& n, const SquarePlace& square) {
   constexpr float low = 0.21132487F;
@@ -54,7 +50,7 @@ float HorizonRegion::average_cosine(const SquarePlace& square, int refinements) 
   const int done = square.level >= smooth_level ? refinements + 1 : 0;
   float sum = 0;
   for (unsigned q = 0; q < 4; ++q)
-    sum += average_cosine(quadrant(square, q), done);
+    sum += average_cosine(square.quadrant(q), done);
   return 0.25F * sum;
 }
 
