@@ -73,18 +73,17 @@ void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
 }
 
 const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
-                                          const AdaptiveOptions& options,
-                                          const Occlusion* occlusion) {
+                                          const AdaptiveOptions& options, Occlusion* occlusion) {
   turn_to(reflectance, options);
   start();
   refine(options);
+  m_open_leaves = m_product.leaf_count();
   return finish(options, occlusion);
 }
 
 const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance,
-                                           const AdaptiveOptions& options,
-                                           const Occlusion* occlusion) {
-  if (!serves(reflectance, options.drift_bound))
+                                           const AdaptiveOptions& options, Occlusion* occlusion) {
+  if (!serves(reflectance, options.drift_bound) || is_overgrown())
     return build(reflectance, options, occlusion);
   if (occlusion == nullptr && !m_masked)
     return m_product;
@@ -92,8 +91,7 @@ const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance
   return finish(options, occlusion);
 }
 
-const ProductTree& AdaptiveProduct::finish(const AdaptiveOptions& options,
-                                           const Occlusion* occlusion) {
+const ProductTree& AdaptiveProduct::finish(const AdaptiveOptions& options, Occlusion* occlusion) {
   if (occlusion != nullptr)
     mask(options, *occlusion);
   m_product.sum_upwards(m_parent_slots);
@@ -133,7 +131,7 @@ float AdaptiveProduct::squared_shift(const ReflectionFrame& reflection) const {
 }
 
 /// A node whose weights are yet to come, in place of a leaf.
-void AdaptiveProduct::new_node(std::int32_t slot, const detail::Square& square) {
+void AdaptiveProduct::new_node(std::int32_t slot, const SquarePlace& square) {
   const std::size_t index = m_product.m_nodes.size();
   m_product.m_nodes.emplace_back();
   m_squares.push_back(square);
@@ -254,9 +252,9 @@ void AdaptiveProduct::add_leaves(std::size_t node, const detail::Quadrants& quad
 void AdaptiveProduct::set_leaf(std::uint32_t slot, const detail::Quadrants& quadrants,
                                std::size_t q) {
   ProductLeaf& leaf = m_product.m_leaves[slot];
-  const detail::Square place = square(slot);
-  leaf.x = place.x;
-  leaf.y = place.y;
+  const SquarePlace place = square(slot);
+  leaf.x = static_cast<std::uint16_t>(place.column);
+  leaf.y = static_cast<std::uint16_t>(place.row);
   leaf.level = static_cast<std::uint8_t>(place.level);
   leaf.reflectance = quadrants.reflectance[q];
   leaf.slope = {quadrants.slope_x[q], quadrants.slope_y[q]};

@@ -17,7 +17,7 @@ LightSamples::LightSamples(const LoadedScene& scene, const RenderOptions& option
     : m_scene(scene), m_options(options), m_sampler(factories.sampler->make(samples_of(options))),
       m_integrator(factories.integrator ? factories.integrator->make(samples_of(options))
                                         : nullptr),
-      m_occlusion(scene) {}
+      m_occlusion(scene.shapes(), scene.light()) {}
 
 void LightSamples::forget() {
   m_sampler->forget();
@@ -75,15 +75,6 @@ bool LightSamples::visible(std::size_t i) const {
     return false;
   const Vec3 w = m_scene.light().to_world(m_directions[i].direction);
   return !m_scene.shapes().occluded(leave(m_seen->hit, w));
-}
-
-/// Below the surface nothing counts as hidden: what lies there is no light's way.
-void LightSamples::Occlusion::find(std::span<const Vec3> directions,
-                                   std::span<std::uint8_t> hidden) const {
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const Vec3 w = m_scene.light().to_world(directions[i]);
-    hidden[i] = m_hit->normal.dot(w) > 0 && m_scene.shapes().occluded(leave(*m_hit, w)) ? 1 : 0;
-  }
 }
 
 } // namespace haarlight::renderer

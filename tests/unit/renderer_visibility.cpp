@@ -1,5 +1,6 @@
 // Visibility trees against the rays they stand for.
 
+#include "../../renderer/src/visibility/seen_squares.h"
 #include "temporary_folder.h"
 
 #include <renderer/visibility.h>
@@ -226,4 +227,52 @@ TEST_CASE("visibilities multiply to what is seen past all objects", "[visibility
       all, [&](const Vec3& w) { return w.dot(hit.normal) > 0 && !set.occluded(leave(hit, w)); });
   CHECK(result.wrong == 0);
   CHECK(result.mean == Approx(result.rays).margin(2e-3));
+}
+
+namespace {
+
+/// The share of a square above the horizon of a hit from which rays get by all shapes; 1 where
+/// nothing lies above.
+double ray_share(const ShapeSet& set, const Hit& hit, const wavelet::SquarePlace& square) {
+  constexpr std::uint32_t side = 16;
+  const float step = power_of_two(-square.level) / side;
+  int above = 0;
+  int seen = 0;
+  for (std::uint32_t i = 0; i < side * side; ++i) {
+    const Vec2 p((static_cast<float>(side * square.column + i % side) + 0.5F) * step,
+                 (static_cast<float>(side * square.row + i / side) + 0.5F) * step);
+    const Vec3 w = turned_light().to_world(wavelet::square_to_sphere(p));
+    if (hit.normal.dot(w) <= 0)
+      continue;
+    ++above;
+    seen += set.occluded(leave(hit, w)) ? 0 : 1;
+  }
+  return above == 0 ? 1 : static_cast<double>(seen) / above;
+}
+
+} // namespace
+
+TEST_CASE("estimates of what is seen of squares are near the rays' share, and 0 only where that is",
+          "[visibility]") {
+  for (const Pair& pair : pairs()) {
+    const ShapeSet set = both(pair);
+    const Hit hit = top_of_sphere();
+    detail::SeenSquares squares(set, turned_light());
+    squares.turn_to(hit);
+    for (const int level : {3, 5}) {
+      INFO(pair.name << " at level " << level);
+      double off = 0;
+      const auto side = 1U << static_cast<unsigned>(level);
+      for (std::uint32_t i = 0; i < side * side; ++i) {
+        const wavelet::SquarePlace place = {level, i % side, i / side};
+        float seen = -1;
+        squares.find({&place, 1}, {&seen, 1});
+        const double share = ray_share(set, hit, place);
+        off += std::abs(static_cast<double>(seen) - share);
+        CHECK((seen > 0 || share == 0));
+        CHECK(seen <= 1);
+      }
+      CHECK(off / (side * side) < (level == 3 ? 0.03 : 0.01));
+    }
+  }
 }

@@ -1,8 +1,10 @@
 #pragma once
 // Products of a light tree and a reflectance seen through a rotation, built on the fly.
 
+#include <wavelet/occlusion.h>
 #include <wavelet/product_tree.h>
 #include <wavelet/pyramid.h>
+#include <wavelet/square_place.h>
 
 #include <span>
 #include <vector>
@@ -27,34 +29,14 @@ struct AdaptiveOptions {
   float drift_bound = 0.01F;
 };
 
-/// What stands between a point and the light.
-class Occlusion {
-public:
-  virtual ~Occlusion() = default;
-
-  /// Sets each of `out` to whether something is in the way of a direction in the light's frame; as
-  /// many as `directions`.
-  virtual void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const = 0;
-};
-
 namespace detail {
 
 /// What a leaf weighs.
 struct LeafShare {
   float density = 0; ///< the product's average weight, whatever is in the way
   float kept = 1;    ///< of it
+  float error = 0;   ///< once tested: what the leaf leaves of the variance where all of it is kept
   bool tested = false;
-};
-
-/// A square of side 2^-level, in squares of its level.
-struct Square {
-  std::int32_t level = 0;
-  std::uint16_t x = 0, y = 0;
-
-  Square quadrant(unsigned q) const {
-    return {level + 1, static_cast<std::uint16_t>(2 * x + (q & 1U)),
-            static_cast<std::uint16_t>(2 * y + (q >> 1U))};
-  }
 };
 
 struct Quadrants;
@@ -73,16 +55,16 @@ public:
   explicit AdaptiveProduct(const TreeView& light);
 
   /// The product at one shading point; valid until the next call.
-  /// @param occlusion if given, squares of weight whose centres are hidden from the point get
-  /// little of the density, never none; the product's integral stays that of light and reflectance
+  /// @param occlusion if given, squares of weight get less of the density the less of them is seen
+  /// from the point, but never none; the product's integral stays that of light and reflectance
   const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
-                           const Occlusion* occlusion = nullptr);
+                           Occlusion* occlusion = nullptr);
 
   /// The same at a point close to that of the last product. That is kept as it is while little has
   /// changed since it was built: its density is above 0 wherever this point's integrand is, but its
   /// integral is another point's. Else it is built afresh.
   const ProductTree& follow(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
-                            const Occlusion* occlusion = nullptr);
+                            Occlusion* occlusion = nullptr);
 
 private:
   void turn_to(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
@@ -92,11 +74,11 @@ private:
   double drift_of(std::uint32_t slot) const;
   float squared_shift(const ReflectionFrame& reflection) const;
   void refine(const AdaptiveOptions& options);
-  const ProductTree& finish(const AdaptiveOptions& options, const Occlusion* occlusion);
-  void mask(const AdaptiveOptions& options, const Occlusion& occlusion);
-  bool hide(const Occlusion& occlusion);
+  const ProductTree& finish(const AdaptiveOptions& options, Occlusion* occlusion);
+  void mask(const AdaptiveOptions& options, Occlusion& occlusion);
+  bool hide(Occlusion& occlusion);
   void find_candidates();
-  void keep(std::uint32_t slot, float share);
+  void keep(std::uint32_t slot, float seen);
   void unmask();
   double excess_error(const AdaptiveOptions& options) const;
   void split_above(float threshold);
@@ -105,15 +87,16 @@ private:
   void add_leaves(std::size_t node, const detail::Quadrants& quadrants, float threshold);
   void set_leaf(std::uint32_t slot, const detail::Quadrants& quadrants, std::size_t q);
   float threshold(double excess) const;
+  bool is_overgrown() const;
   bool has_room() const { return m_product.leaf_count() + 3 <= m_limit; }
   void split(std::uint32_t slot);
-  void new_node(std::int32_t slot, const detail::Square& square);
+  void new_node(std::int32_t slot, const SquarePlace& square);
 
   std::size_t slot_count() const { return 4 * m_product.m_nodes.size(); }
   bool is_leaf(std::uint32_t slot) const {
     return m_product.m_nodes[slot / 4].child[slot & 3U] < 0;
   }
-  detail::Square square(std::uint32_t slot) const {
+  SquarePlace square(std::uint32_t slot) const {
     return m_squares[slot / 4].quadrant(slot & 3U);
   }
   float area(std::uint32_t slot) const {
@@ -124,7 +107,8 @@ private:
   std::vector<ProductLeaf> m_start; ///< of the nodes that are the same for every product
   RotatedReflectance m_reflectance;
   std::size_t m_limit = 0;
-  std::vector<detail::Square> m_squares; ///< by node
+  std::size_t m_open_leaves = 0; ///< of the product that was built, before anything was in the way
+  std::vector<SquarePlace> m_squares; ///< by node
   std::vector<std::int32_t> m_parent_slots;
   std::vector<float> m_errors; ///< by slot, or longer: what each leaf leaves of the variance, by
                                ///< estimate; 0 where there is a node
@@ -132,8 +116,8 @@ private:
       m_shares;          ///< by slot, or longer; of density 0 where there is a node
   bool m_masked = false; ///< some leaf's share is not all of it
   std::vector<std::uint32_t> m_candidates; ///< slots of leaves to be tested
-  std::vector<Vec3> m_directions;
-  std::vector<std::uint8_t> m_hidden;
+  std::vector<SquarePlace> m_places;       ///< theirs
+  std::vector<float> m_seen;               ///< of them
   double m_weight = 0;
   double m_error = 0;
   double m_drift = 0; ///< of the leaves, see drift_rate()

@@ -18,7 +18,7 @@ struct ShadingPoint {
   Vec3 n;                                        ///< unit normal, on the viewer's side
   Vec3 wo;                                       ///< unit direction to the viewer, n·wo > 0
   ReflectionFrame reflection;                    ///< of n and wo
-  const wavelet::Occlusion* occlusion = nullptr; ///< of the point, where anything may be in the way
+  wavelet::Occlusion* occlusion = nullptr; ///< of the point, where anything may be in the way
 };
 
 ShadingPoint shading_point(const Vec3& n, const Vec3& wo);
