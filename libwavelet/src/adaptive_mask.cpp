@@ -1,83 +1,86 @@
 // The part of adaptive products that knows what is in the light's way.
 
 #include <wavelet/adaptive_product.h>
+#include <wavelet/sphere_map.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace haarlight::wavelet {
 namespace {
 
 /// Leaves below this share of the total are not worth a test.
-constexpr double least_share = 0.001;
+constexpr double least_share = 0.003;
 
-/// What is kept of a leaf of which nothing is seen.
-constexpr float least_kept = 0.01F;
+/// What is kept of a leaf whose centre is hidden: as much of it as its quadrants' centres see, but
+/// never less than this.
+constexpr float least_kept = 0.04F;
 
-/// Hiding moves the weight to other squares, and shows which lie across an edge; those are then
-/// refined and tested in turn.
-constexpr int rounds = 4;
+/// Hiding moves the weight to other squares, which are then refined and tested in turn.
+constexpr int rounds = 3;
 
-/// What refinement may multiply leaves by.
-constexpr std::size_t most_growth = 2;
+Vec3 center_of(const SquarePlace& square) {
+  const float side = power_of_two(-square.level);
+  return square_to_sphere(Vec2((static_cast<float>(square.column) + 0.5F) * side,
+                               (static_cast<float>(square.row) + 0.5F) * side));
+}
 
 } // namespace
 
-void AdaptiveProduct::mask(const AdaptiveOptions& options, Occlusion& occlusion) {
-  // A point in deep shadow has little light left to be right about.
-  m_limit = std::min(m_limit, most_growth * m_open_leaves);
+void AdaptiveProduct::mask(const AdaptiveOptions& options, const Occlusion& occlusion) {
+  // A point in deep shadow has little light left to be right about: no more than as much again.
+  m_limit = std::min(m_limit, 2 * m_product.leaf_count());
   for (int round = 0; round < rounds && hide(occlusion); ++round)
     refine(options);
   m_limit = static_cast<std::size_t>(options.max_leaves);
 }
 
-/// Whether what was refined for points before leaves no room for this one.
-bool AdaptiveProduct::is_overgrown() const {
-  return 2 * m_product.leaf_count() > (most_growth + 1) * m_open_leaves;
-}
-
 /// Tests the leaves of weight that were not tested yet. @return whether any is hidden
-bool AdaptiveProduct::hide(Occlusion& occlusion) {
+bool AdaptiveProduct::hide(const Occlusion& occlusion) {
   find_candidates();
-  m_seen.resize(m_places.size());
-  occlusion.find(m_places, m_seen);
-  bool hidden = false;
+  m_hidden.resize(m_candidates.size());
+  occlusion.find(m_directions, m_hidden);
+  m_directions.clear();
+  std::size_t hidden = 0;
   for (std::size_t i = 0; i < m_candidates.size(); ++i) {
     m_shares[m_candidates[i]].tested = true;
-    m_shares[m_candidates[i]].error = m_errors[m_candidates[i]];
-    if (m_seen[i] == 1)
+    if (m_hidden[i] == 0)
       continue;
-    keep(m_candidates[i], m_seen[i]);
-    hidden = true;
+    for (unsigned q = 0; q < 4; ++q)
+      m_directions.push_back(center_of(square(m_candidates[i]).quadrant(q)));
+    m_candidates[hidden++] = m_candidates[i];
   }
-  m_masked = m_masked || hidden;
-  return hidden;
+  m_hidden.resize(4 * hidden);
+  occlusion.find(m_directions, m_hidden);
+  for (std::size_t i = 0; i < hidden; ++i) {
+    const int covered =
+        m_hidden[4 * i] + m_hidden[4 * i + 1] + m_hidden[4 * i + 2] + m_hidden[4 * i + 3];
+    keep(m_candidates[i], std::max(least_kept, 1 - 0.25F * static_cast<float>(covered)));
+  }
+  m_masked = m_masked || hidden > 0;
+  return hidden > 0;
 }
 
 void AdaptiveProduct::find_candidates() {
   m_candidates.clear();
-  m_places.clear();
+  m_directions.clear();
   const auto least = static_cast<float>(least_share * m_weight);
   for (std::uint32_t slot = 0; slot < slot_count(); ++slot) {
     if (m_shares[slot].tested || !(m_shares[slot].density * area(slot) > least))
       continue;
     m_candidates.push_back(slot);
-    m_places.push_back(square(slot));
+    m_directions.push_back(center_of(square(slot)));
   }
 }
 
-/// Leaves a leaf that had all of its density what it is worth. With the share c of leaf i seen, its
-/// weight w_i counts as w_i √c in the second moment: variance is least if its density is in
-/// proportion to that, and Σ w_i (√c − c) of the mean is then what splitting could get rid of.
-void AdaptiveProduct::keep(std::uint32_t slot, float seen) {
+/// Leaves a leaf that had all of its density a share of it.
+void AdaptiveProduct::keep(std::uint32_t slot, float share) {
   detail::LeafShare& leaf = m_shares[slot];
-  const float weight = leaf.density * area(slot);
-  leaf.kept = std::max(least_kept, std::sqrt(seen));
-  const float across = seen > 0 ? 2 * (leaf.kept - seen) * weight : 0;
-  m_errors[slot] = leaf.kept * leaf.error + across;
-  m_weight -= static_cast<double>((1 - leaf.kept) * weight);
-  m_error += static_cast<double>(m_errors[slot] - leaf.error);
-  m_product.weight_at(static_cast<std::int32_t>(slot)) = leaf.kept * leaf.density;
+  const auto lost = static_cast<double>(1 - share);
+  leaf.kept = share;
+  m_weight -= lost * static_cast<double>(leaf.density * area(slot));
+  m_error -= lost * static_cast<double>(m_errors[slot]);
+  m_errors[slot] *= share;
+  m_product.weight_at(static_cast<std::int32_t>(slot)) = share * leaf.density;
 }
 
 /// Gives every leaf its density back.
@@ -88,8 +91,7 @@ void AdaptiveProduct::unmask() {
     if (!is_leaf(slot))
       continue;
     detail::LeafShare& share = m_shares[slot];
-    if (share.tested)
-      m_errors[slot] = share.error;
+    m_errors[slot] /= share.kept;
     share = {share.density};
     m_product.weight_at(static_cast<std::int32_t>(slot)) = share.density;
     m_weight += static_cast<double>(share.density * area(slot));

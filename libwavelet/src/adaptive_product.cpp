@@ -73,17 +73,28 @@ void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
 }
 
 const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
-                                          const AdaptiveOptions& options, Occlusion* occlusion) {
+                                          const AdaptiveOptions& options,
+                                          const Occlusion* occlusion) {
   turn_to(reflectance, options);
   start();
   refine(options);
-  m_open_leaves = m_product.leaf_count();
   return finish(options, occlusion);
 }
 
+const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
+                                          const AdaptiveOptions& options,
+                                          SquareVisibility& visibility) {
+  m_visibility = &visibility;
+  build(reflectance, options);
+  m_visibility = nullptr;
+  m_reflectance.pyramid = nullptr; // follow() has no product to keep
+  return m_product;
+}
+
 const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance,
-                                           const AdaptiveOptions& options, Occlusion* occlusion) {
-  if (!serves(reflectance, options.drift_bound) || is_overgrown())
+                                           const AdaptiveOptions& options,
+                                           const Occlusion* occlusion) {
+  if (!serves(reflectance, options.drift_bound))
     return build(reflectance, options, occlusion);
   if (occlusion == nullptr && !m_masked)
     return m_product;
@@ -91,7 +102,8 @@ const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance
   return finish(options, occlusion);
 }
 
-const ProductTree& AdaptiveProduct::finish(const AdaptiveOptions& options, Occlusion* occlusion) {
+const ProductTree& AdaptiveProduct::finish(const AdaptiveOptions& options,
+                                           const Occlusion* occlusion) {
   if (occlusion != nullptr)
     mask(options, *occlusion);
   m_product.sum_upwards(m_parent_slots);
@@ -220,6 +232,8 @@ void AdaptiveProduct::expand(std::size_t node, float threshold) {
       see_light(node + i, quadrants[i]);
     detail::weigh(m_reflectance, m_product.m_rests[0].floor,
                   std::span(m_squares).subspan(node, count), quadrants.data());
+    if (m_visibility != nullptr)
+      look(node, std::span(quadrants).first(count));
     for (std::size_t i = 0; i < count; ++i)
       add_leaves(node + i, quadrants[i], threshold);
     node += count;

@@ -2,7 +2,6 @@
 // Samples of the distant light at the points that pixels see, by the chosen sampler.
 
 #include "film_rendering.h"
-#include "visibility/seen_squares.h"
 
 #include <optional>
 #include <vector>
@@ -40,7 +39,6 @@ private:
   const RenderOptions& m_options;
   std::unique_ptr<Sampler> m_sampler;
   std::unique_ptr<Sampler> m_integrator; ///< of L_ns, where the sampler has none
-  detail::SeenSquares m_occlusion;
   const PixelHit* m_seen = nullptr;
   ShadingPoint m_point;
   std::vector<DirectionSample> m_directions;

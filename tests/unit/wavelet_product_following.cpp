@@ -4,8 +4,6 @@
 #include "product_of.h"
 #include "random_map.h"
 
-#include <wavelet/square_cap.h>
-
 #include <catch2/catch.hpp>
 
 #include <random>
@@ -89,11 +87,9 @@ class HalfHidden : public Occlusion {
 public:
   explicit HalfHidden(const Vec3& side) : m_side(side) {}
   bool hides(const Vec3& w) const { return m_side.dot(w) > 0; }
-  void find(std::span<const SquarePlace> squares, std::span<float> seen) override {
-    for (std::size_t i = 0; i < squares.size(); ++i)
-      seen[i] = positive_share_of(squares[i], [&](Float4 x, Float4 y, Float4 z) {
-        return -(m_side.x() * x + m_side.y() * y + m_side.z() * z);
-      });
+  void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override {
+    for (std::size_t i = 0; i < directions.size(); ++i)
+      hidden[i] = hides(directions[i]) ? 1 : 0;
   }
 
 private:
@@ -130,7 +126,7 @@ TEST_CASE("products that know what is in the way spend few samples there, and mi
     const float turn = 0.02F * static_cast<float>(step);
     const Vec3 n(std::sin(turn), 0, std::cos(turn));
     const auto reflectance = reflectance_at(pyramid, n, n, 0);
-    HalfHidden occlusion(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)));
+    const HalfHidden occlusion(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)));
     const ProductTree& all = plain.build(reflectance, {});
     const ProductTree& open = knowing.follow(reflectance, {}, &occlusion);
     CHECK(luminance(open.integral()) == Approx(luminance(all.integral())).epsilon(0.02));

@@ -1,10 +1,9 @@
 #pragma once
 // Products of a light tree and a reflectance seen through a rotation, built on the fly.
 
-#include <wavelet/occlusion.h>
 #include <wavelet/product_tree.h>
 #include <wavelet/pyramid.h>
-#include <wavelet/square_place.h>
+#include <wavelet/square_visibility.h>
 
 #include <span>
 #include <vector>
@@ -29,13 +28,22 @@ struct AdaptiveOptions {
   float drift_bound = 0.01F;
 };
 
+/// What stands between a point and the light.
+class Occlusion {
+public:
+  virtual ~Occlusion() = default;
+
+  /// Sets each of `out` to whether something is in the way of a direction in the light's frame; as
+  /// many as `directions`.
+  virtual void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const = 0;
+};
+
 namespace detail {
 
 /// What a leaf weighs.
 struct LeafShare {
   float density = 0; ///< the product's average weight, whatever is in the way
   float kept = 1;    ///< of it
-  float error = 0;   ///< once tested: what the leaf leaves of the variance where all of it is kept
   bool tested = false;
 };
 
@@ -55,16 +63,21 @@ public:
   explicit AdaptiveProduct(const TreeView& light);
 
   /// The product at one shading point; valid until the next call.
-  /// @param occlusion if given, squares of weight get less of the density the less of them is seen
-  /// from the point, but never none; the product's integral stays that of light and reflectance
+  /// @param occlusion if given, squares of weight whose centres are hidden from the point get
+  /// little of the density, never none; the product's integral stays that of light and reflectance
   const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
-                           Occlusion* occlusion = nullptr);
+                           const Occlusion* occlusion = nullptr);
 
-  /// The same at a point close to that of the last product. That is kept as it is while little has
+  /// The same where squares get the density that what is seen of them is worth, but never none; the
+  /// product's integral stays that of light and reflectance. Much refined where shadows end.
+  const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
+                           SquareVisibility& visibility);
+
+  /// The first at a point close to that of the last product. That is kept as it is while little has
   /// changed since it was built: its density is above 0 wherever this point's integrand is, but its
   /// integral is another point's. Else it is built afresh.
   const ProductTree& follow(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
-                            Occlusion* occlusion = nullptr);
+                            const Occlusion* occlusion = nullptr);
 
 private:
   void turn_to(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
@@ -74,12 +87,15 @@ private:
   double drift_of(std::uint32_t slot) const;
   float squared_shift(const ReflectionFrame& reflection) const;
   void refine(const AdaptiveOptions& options);
-  const ProductTree& finish(const AdaptiveOptions& options, Occlusion* occlusion);
-  void mask(const AdaptiveOptions& options, Occlusion& occlusion);
-  bool hide(Occlusion& occlusion);
+  const ProductTree& finish(const AdaptiveOptions& options, const Occlusion* occlusion);
+  void mask(const AdaptiveOptions& options, const Occlusion& occlusion);
+  bool hide(const Occlusion& occlusion);
   void find_candidates();
-  void keep(std::uint32_t slot, float seen);
+  void keep(std::uint32_t slot, float share);
   void unmask();
+  void look(std::size_t first, std::span<detail::Quadrants> quadrants);
+  void find_lookouts(std::size_t first, std::span<const detail::Quadrants> quadrants);
+  static void keep(detail::Quadrants& quadrants, unsigned q, float area, float seen);
   double excess_error(const AdaptiveOptions& options) const;
   void split_above(float threshold);
   void expand(std::size_t first_node, float threshold);
@@ -87,7 +103,6 @@ private:
   void add_leaves(std::size_t node, const detail::Quadrants& quadrants, float threshold);
   void set_leaf(std::uint32_t slot, const detail::Quadrants& quadrants, std::size_t q);
   float threshold(double excess) const;
-  bool is_overgrown() const;
   bool has_room() const { return m_product.leaf_count() + 3 <= m_limit; }
   void split(std::uint32_t slot);
   void new_node(std::int32_t slot, const SquarePlace& square);
@@ -96,9 +111,7 @@ private:
   bool is_leaf(std::uint32_t slot) const {
     return m_product.m_nodes[slot / 4].child[slot & 3U] < 0;
   }
-  SquarePlace square(std::uint32_t slot) const {
-    return m_squares[slot / 4].quadrant(slot & 3U);
-  }
+  SquarePlace square(std::uint32_t slot) const { return m_squares[slot / 4].quadrant(slot & 3U); }
   float area(std::uint32_t slot) const {
     return power_of_two(-2 * (m_squares[slot / 4].level + 1));
   }
@@ -107,7 +120,6 @@ private:
   std::vector<ProductLeaf> m_start; ///< of the nodes that are the same for every product
   RotatedReflectance m_reflectance;
   std::size_t m_limit = 0;
-  std::size_t m_open_leaves = 0; ///< of the product that was built, before anything was in the way
   std::vector<SquarePlace> m_squares; ///< by node
   std::vector<std::int32_t> m_parent_slots;
   std::vector<float> m_errors; ///< by slot, or longer: what each leaf leaves of the variance, by
@@ -115,9 +127,13 @@ private:
   std::vector<detail::LeafShare>
       m_shares;          ///< by slot, or longer; of density 0 where there is a node
   bool m_masked = false; ///< some leaf's share is not all of it
-  std::vector<std::uint32_t> m_candidates; ///< slots of leaves to be tested
-  std::vector<SquarePlace> m_places;       ///< theirs
-  std::vector<float> m_seen;               ///< of them
+  std::vector<std::uint32_t> m_candidates;  ///< slots of leaves to be tested
+  SquareVisibility* m_visibility = nullptr; ///< while a product is built by it
+  std::vector<std::uint64_t> m_occluders;   ///< by slot, of squares that were looked at
+  std::vector<SquarePlace> m_places;        ///< of candidates
+  std::vector<SquareView> m_views;
+  std::vector<Vec3> m_directions;
+  std::vector<std::uint8_t> m_hidden;
   double m_weight = 0;
   double m_error = 0;
   double m_drift = 0; ///< of the leaves, see drift_rate()

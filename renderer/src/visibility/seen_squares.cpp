@@ -12,11 +12,15 @@ using wavelet::RegionPart;
 using wavelet::SquareCap;
 using wavelet::SquareDirections;
 using wavelet::SquarePlace;
+using wavelet::SquareView;
 
 namespace {
 
 /// What may be seen of a square none of whose points are.
 constexpr float least_seen = 1.0F / 64;
+
+/// Of SquareView::occluders: stands for all obstacles from this number on.
+constexpr std::size_t last_bit = 63;
 
 /// The points of square_directions() as bits, and the trapezoid rule for them, in 16ths.
 constexpr unsigned all_points = 0x1FF;
@@ -76,44 +80,100 @@ Belt belt_of(const Solid& solid, const Eigen::Vector3d& origin) {
 
 bool is_convex(const Solid& solid) { return solid.kind != SolidKind::Torus; }
 
+/// One square, and those of its points above the horizon that nothing hides so far. The points are
+/// worked out only once something may be in their way.
+class Glance {
+public:
+  Glance(const SquarePlace& square, const Vec3& normal)
+      : m_square(square), m_cap(wavelet::square_cap(square)), m_normal(normal) {}
+
+  /// Takes away the points behind an obstacle. @return where the square surely lies of what that
+  /// hides; Partial if it may be across an edge
+  RegionPart look_past(const Obstacle& obstacle) {
+    const RegionPart part = obstacle.bounds.classify(m_cap);
+    if (part == RegionPart::Outside)
+      return part;
+    if (obstacle.solid != nullptr)
+      return obstacle.belt.is_beside(m_cap) ? RegionPart::Outside : look_past_solid(obstacle);
+    if (part == RegionPart::Partial)
+      hide(points_beyond(points(), obstacle.bounds.axis, obstacle.bounds.cosine));
+    return part;
+  }
+
+  /// The share of what lies above the horizon.
+  float seen() const {
+    if (!m_points || m_left == m_above)
+      return 1;
+    return std::max(least_seen, static_cast<float>(points_weight(m_left)) /
+                                    static_cast<float>(points_weight(m_above)));
+  }
+
+private:
+  RegionPart look_past_solid(const Obstacle& obstacle) {
+    const unsigned near = points_beyond(points(), obstacle.bounds.axis, obstacle.bounds.cosine) &
+                          points_within(points(), obstacle.belt);
+    unsigned met = 0;
+    for (unsigned rest = m_left & near; rest != 0; rest &= rest - 1) {
+      const auto index = static_cast<unsigned>(std::countr_zero(rest));
+      if (obstacle.meet(point_of(points(), index)))
+        met |= 1U << index;
+    }
+    hide(met);
+    return met == all_points && is_convex(*obstacle.solid) ? RegionPart::Inside
+                                                           : RegionPart::Partial;
+  }
+
+  void hide(unsigned points) { m_left &= ~points; }
+
+  const SquareDirections& points() {
+    if (!m_points) {
+      m_points = wavelet::square_directions(m_square);
+      m_above = points_beyond(*m_points, m_normal, 0);
+      m_left = m_above;
+    }
+    return *m_points;
+  }
+
+  SquarePlace m_square;
+  SquareCap m_cap;
+  Vec3 m_normal;
+  std::optional<SquareDirections> m_points;
+  unsigned m_above = all_points;
+  unsigned m_left = all_points;
+};
+
 } // namespace
 
-bool RaySolid::meet(const Vec3& w) const {
+bool Obstacle::meet(const Vec3& w) const {
   return canonical_distance(*solid, origin, to_object * w.cast<double>()) < no_hit;
 }
 
 SeenSquares::SeenSquares(const ShapeSet& shapes, const Light& light)
     : m_shapes(shapes), m_light(light), m_visibility(shapes, light) {}
 
-/// Gathers what may be in the way.
-void SeenSquares::turn() {
-  m_turned = true;
-  m_caps.clear();
-  m_solids.clear();
-  m_normal = m_light.to_light(m_from->normal);
-  const Eigen::Vector3d origin = leave(*m_from, m_from->normal).origin.cast<double>();
+void SeenSquares::turn_to(const Hit& from) {
+  m_obstacles.clear();
+  m_normal = m_light.to_light(from.normal);
+  const Eigen::Vector3d origin = leave(from, from.normal).origin.cast<double>();
   for (const WorldPlane& plane : m_shapes.planes()) {
-    if (!m_visibility.may_hide(plane.object, *m_from))
+    if (!m_visibility.may_hide(plane.object, from))
       continue;
     const bool above = plane.normal.dot(origin) > plane.height;
     const Vec3 normal = m_light.to_light(plane.normal.cast<float>());
-    m_caps.push_back(Cap::half_space(above ? Vec3(-normal) : normal));
+    m_obstacles.emplace_back().bounds = Cap::half_space(above ? Vec3(-normal) : normal);
   }
   for (const Solid& solid : m_shapes.solids())
-    if (m_visibility.may_hide(solid.object, *m_from))
+    if (m_visibility.may_hide(solid.object, from))
       add(solid, origin);
 }
 
 void SeenSquares::add(const Solid& solid, const Eigen::Vector3d& origin) {
-  Cap bounds = Cap::around_ball(solid.center - origin, solid.radius);
-  bounds.axis = m_light.to_light(bounds.axis);
-  if (solid.kind == SolidKind::WorldSphere) {
-    m_caps.push_back(bounds);
+  Obstacle& added = m_obstacles.emplace_back();
+  added.bounds = Cap::around_ball(solid.center - origin, solid.radius);
+  added.bounds.axis = m_light.to_light(added.bounds.axis);
+  if (solid.kind == SolidKind::WorldSphere)
     return;
-  }
-  RaySolid& added = m_solids.emplace_back();
   added.solid = &solid;
-  added.bounds = bounds;
   added.belt = belt_of(solid, origin);
   added.belt.normal = m_light.to_light(added.belt.normal);
   added.origin = solid.to_object.point(origin);
@@ -121,54 +181,29 @@ void SeenSquares::add(const Solid& solid, const Eigen::Vector3d& origin) {
     added.to_object.col(i) = solid.to_object.vector(m_light.to_world(Vec3::Unit(i)).cast<double>());
 }
 
-void SeenSquares::find(std::span<const SquarePlace> squares, std::span<float> seen) {
-  if (!m_turned)
-    turn();
+void SeenSquares::look(std::span<const SquarePlace> squares, std::span<SquareView> views) {
   for (std::size_t i = 0; i < squares.size(); ++i)
-    seen[i] = seen_of(squares[i]);
+    views[i] = view_of(squares[i], views[i].occluders);
 }
 
-float SeenSquares::seen_of(const SquarePlace& square) const {
-  const SquareCap cap = wavelet::square_cap(square);
-  std::optional<SquareDirections> points;
-  unsigned above = 0;
-  unsigned left = 0;
-  const auto look = [&] {
-    if (points)
-      return;
-    points = wavelet::square_directions(square);
-    above = points_beyond(*points, m_normal, 0);
-    left = above;
-  };
-  for (const Cap& hidden : m_caps) {
-    const RegionPart part = hidden.classify(cap);
-    if (part == RegionPart::Inside)
-      return 0;
-    if (part == RegionPart::Outside)
-      continue;
-    look();
-    left &= ~points_beyond(*points, hidden.axis, hidden.cosine);
+SquareView SeenSquares::view_of(const SquarePlace& square, std::uint64_t occluders) const {
+  Glance glance(square, m_normal);
+  std::uint64_t in_part = 0;
+  for (std::uint64_t rest = occluders; rest != 0; rest &= rest - 1) {
+    const auto bit = static_cast<std::size_t>(std::countr_zero(rest));
+    const std::size_t end = bit == last_bit ? m_obstacles.size() : bit + 1;
+    for (std::size_t i = bit; i < std::min(end, m_obstacles.size()); ++i)
+      switch (glance.look_past(m_obstacles[i])) {
+      case RegionPart::Inside:
+        return {0, 0};
+      case RegionPart::Partial:
+        in_part |= std::uint64_t{1} << bit;
+        break;
+      case RegionPart::Outside:
+        break;
+      }
   }
-  for (const RaySolid& solid : m_solids) {
-    if (solid.bounds.classify(cap) == RegionPart::Outside || solid.belt.is_beside(cap))
-      continue;
-    look();
-    unsigned met = 0;
-    for (unsigned rest = left & points_beyond(*points, solid.bounds.axis, solid.bounds.cosine) &
-                         points_within(*points, solid.belt);
-         rest != 0; rest &= rest - 1) {
-      const auto index = static_cast<unsigned>(std::countr_zero(rest));
-      if (solid.meet(point_of(*points, index)))
-        met |= 1U << index;
-    }
-    if (met == all_points && is_convex(*solid.solid))
-      return 0;
-    left &= ~met;
-  }
-  if (!points || left == above)
-    return 1;
-  return std::max(least_seen, static_cast<float>(points_weight(left)) /
-                                  static_cast<float>(points_weight(above)));
+  return {glance.seen(), in_part};
 }
 
 } // namespace haarlight::renderer::detail

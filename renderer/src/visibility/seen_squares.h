@@ -6,10 +6,9 @@
 
 #include <renderer/visibility.h>
 
-#include <wavelet/occlusion.h>
+#include <wavelet/square_visibility.h>
 
 #include <cmath>
-#include <optional>
 #include <vector>
 
 namespace haarlight::renderer::detail {
@@ -25,11 +24,12 @@ struct Belt {
   }
 };
 
-/// A shape that rays tell the outline of, as seen from some point; directions are the light's.
-struct RaySolid {
-  const Solid* solid = nullptr;
-  Cap bounds; ///< around its bounding sphere
-  Belt belt;  ///< that holds all directions to it
+/// What may be in the way, as seen from some point; directions are the light's.
+struct Obstacle {
+  Cap bounds; ///< all that it hides lies within
+  const Solid* solid =
+      nullptr; ///< that rays tell the outline of; else all within `bounds` is hidden
+  Belt belt;   ///< that holds all directions to the solid
   Eigen::Vector3d origin;
   Eigen::Matrix3d to_object;
 
@@ -39,32 +39,26 @@ struct RaySolid {
 /// Turned to one point after another. Squares that lie all within a sphere's outline or behind a
 /// plane or one convex shape, or beside all objects, are known; others are looked at in 3 × 3
 /// points, for all objects together.
-class SeenSquares final : public wavelet::Occlusion {
+class SeenSquares final : public wavelet::SquareVisibility {
 public:
   /// @param shapes, light must outlive this
   SeenSquares(const ShapeSet& shapes, const Light& light);
 
-  /// @param from must live until the next call; its normal points to the side that is seen
-  void turn_to(const Hit& from) {
-    m_from = &from;
-    m_turned = false;
-  }
+  /// @param from its normal points to the side that is seen
+  void turn_to(const Hit& from);
 
-  void find(std::span<const wavelet::SquarePlace> squares, std::span<float> seen) override;
+  void look(std::span<const wavelet::SquarePlace> squares,
+            std::span<wavelet::SquareView> views) override;
 
 private:
-  void turn();
   void add(const Solid& solid, const Eigen::Vector3d& origin);
-  float seen_of(const wavelet::SquarePlace& square) const;
+  wavelet::SquareView view_of(const wavelet::SquarePlace& square, std::uint64_t occluders) const;
 
   const ShapeSet& m_shapes;
   const Light& m_light;
   VisibilityTrees m_visibility;
-  const Hit* m_from = nullptr;
-  bool m_turned = false;
-  Vec3 m_normal;           ///< the light's
-  std::vector<Cap> m_caps; ///< all that is within is hidden
-  std::vector<RaySolid> m_solids;
+  Vec3 m_normal;                     ///< in the light's frame
+  std::vector<Obstacle> m_obstacles; ///< number i is bit min(i, 63) of SquareView::occluders
 };
 
 } // namespace haarlight::renderer::detail
