@@ -10,11 +10,8 @@
 namespace haarlight::wavelet {
 namespace {
 
-/// Squares below this share of the total are not worth a look.
-constexpr double least_share = 3e-4;
-
 /// What is kept of a square of which nothing is seen: rays round otherwise than squares do.
-constexpr float least_kept = 1e-3F;
+constexpr float least_kept = 1e-5F;
 
 } // namespace
 
@@ -25,7 +22,7 @@ void AdaptiveProduct::look(std::size_t first, std::span<detail::Quadrants> quadr
   for (std::size_t i = 0; i < m_candidates.size(); ++i) {
     const std::uint32_t slot = m_candidates[i];
     m_occluders[slot] = m_views[i].occluders;
-    keep(quadrants[slot / 4 - first], slot & 3U, area(slot), m_views[i].seen);
+    keep(slot, m_views[i].seen, quadrants[slot / 4 - first]);
   }
 }
 
@@ -35,7 +32,6 @@ void AdaptiveProduct::find_lookouts(std::size_t first,
   m_candidates.clear();
   m_places.clear();
   m_views.clear();
-  const auto least = static_cast<float>(least_share * m_weight);
   m_occluders.resize(m_errors.size(), SquareView{}.occluders);
   for (std::size_t i = 0; i < quadrants.size(); ++i) {
     const std::uint64_t occluders =
@@ -43,7 +39,7 @@ void AdaptiveProduct::find_lookouts(std::size_t first,
     for (unsigned q = 0; q < 4; ++q) {
       const auto slot = static_cast<std::uint32_t>(4 * (first + i) + q);
       m_occluders[slot] = occluders;
-      if (occluders == 0 || !(quadrants[i].density[q] * area(slot) > least))
+      if (occluders == 0 || !(quadrants[i].density[q] > 0))
         continue;
       m_candidates.push_back(slot);
       m_places.push_back(square(slot));
@@ -55,11 +51,14 @@ void AdaptiveProduct::find_lookouts(std::size_t first,
 /// Leaves a quadrant what it is worth. With the share c of a square seen, its weight w counts as
 /// w √c in the second moment: variance is least if its density is in proportion to that, and
 /// w (√c − c) is then what splitting could get rid of, twice over as variances go.
-void AdaptiveProduct::keep(detail::Quadrants& quadrants, unsigned q, float area, float seen) {
-  const float weight = quadrants.density[q] * area;
+void AdaptiveProduct::keep(std::uint32_t slot, float seen, detail::Quadrants& quadrants) const {
+  const unsigned q = slot & 3U;
+  const float weight = quadrants.density[q] * area(slot);
   const float kept = std::max(least_kept, std::sqrt(seen));
-  quadrants.error[q] = kept * quadrants.error[q] + (seen > 0 ? 2 * (kept - seen) * weight : 0);
   quadrants.density[q] *= kept;
+  quadrants.error[q] *= kept;
+  if (seen > 0 && square(slot).level < m_reflectance.pyramid->levels())
+    quadrants.error[q] += 2 * (kept - seen) * weight;
 }
 
 } // namespace haarlight::wavelet

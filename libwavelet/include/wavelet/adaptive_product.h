@@ -95,7 +95,7 @@ private:
   void unmask();
   void look(std::size_t first, std::span<detail::Quadrants> quadrants);
   void find_lookouts(std::size_t first, std::span<const detail::Quadrants> quadrants);
-  static void keep(detail::Quadrants& quadrants, unsigned q, float area, float seen);
+  void keep(std::uint32_t slot, float seen, detail::Quadrants& quadrants) const;
   double excess_error(const AdaptiveOptions& options) const;
   void split_above(float threshold);
   void expand(std::size_t first_node, float threshold);

@@ -9,6 +9,8 @@
 
 #include <wavelet/adaptive_product.h>
 
+#include <algorithm>
+
 namespace haarlight::renderer {
 namespace {
 
@@ -39,8 +41,13 @@ private:
   bool m_follows = false;
 };
 
-/// Of the default bound to that in the open.
-constexpr float shadow_ratio = 3;
+/// Of the default bound where something may be in the way to that in the open. Leaves cost several
+/// times as much there, as what is seen of them has to be found.
+constexpr float shadow_ratio = 6;
+
+/// Leaves there at most for each sample, so that intricate shadows do not cost many times what the
+/// samples do.
+constexpr std::size_t leaves_per_sample = 25;
 
 class ProductVisibilityFactory : public SamplerFactory {
 public:
@@ -48,8 +55,10 @@ public:
       : m_scene(scene), m_options(options) {}
 
   std::unique_ptr<Sampler> make(std::size_t count) const override {
-    return std::make_unique<ProductVisibilitySampler>(
-        m_scene, product_options(m_options, count, shadow_ratio));
+    ProductOptions options = product_options(m_options, count, shadow_ratio);
+    int& most = options.shadowed.max_leaves;
+    most = static_cast<int>(std::min(static_cast<std::size_t>(most), leaves_per_sample * count));
+    return std::make_unique<ProductVisibilitySampler>(m_scene, options);
   }
 
 private:

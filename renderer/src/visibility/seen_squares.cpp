@@ -1,6 +1,6 @@
 #include "seen_squares.h"
 
-#include "../shape_canonical.h"
+#include "ray_lanes.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,6 @@ namespace haarlight::renderer::detail {
 
 using wavelet::RegionPart;
 using wavelet::SquareCap;
-using wavelet::SquareDirections;
 using wavelet::SquarePlace;
 using wavelet::SquareView;
 
@@ -22,63 +21,56 @@ constexpr float least_seen = 1.0F / 64;
 /// Of SquareView::occluders: stands for all obstacles from this number on.
 constexpr std::size_t last_bit = 63;
 
-/// The points of square_directions() as bits, and the trapezoid rule for them, in 16ths.
-constexpr unsigned all_points = 0x1FF;
-constexpr unsigned corner_points = 0x145;
-constexpr unsigned edge_points = 0x0AA;
+/// The points of a square that are looked at, one in each of eight columns and rows. None lies on
+/// an edge, where level planes have their horizon on a whole row of squares.
+constexpr std::size_t batches = 2;
+constexpr unsigned all_points = 0xFF;
+using Points = std::array<Lanes3, batches>;
 
-int points_weight(unsigned points) {
-  return std::popcount(points & corner_points) + 2 * std::popcount(points & edge_points) +
-         ((points >> 4U & 1U) << 2U);
+Points points_of(const SquarePlace& square) {
+  constexpr Float4 columns[batches] = {{0.5F, 1.5F, 2.5F, 3.5F}, {4.5F, 5.5F, 6.5F, 7.5F}};
+  constexpr Float4 rows[batches] = {{1.5F, 4.5F, 7.5F, 2.5F}, {5.5F, 0.5F, 3.5F, 6.5F}};
+  const float step = power_of_two(-square.level - 3);
+  const float u = static_cast<float>(8 * square.column);
+  const float v = static_cast<float>(8 * square.row);
+  Points points;
+  for (std::size_t i = 0; i < batches; ++i)
+    wavelet::square_to_sphere((u + columns[i]) * step, (v + rows[i]) * step, points[i].x,
+                              points[i].y, points[i].z);
+  return points;
+}
+
+unsigned lane_bits(Int4 lanes) {
+  const Int4 four = lanes & Int4{1, 2, 4, 8};
+  return static_cast<unsigned>(four[0] | four[1] | four[2] | four[3]);
 }
 
 /// Bits of those of the points that lie beyond a plane: their product with its normal is above
 /// `least`.
-unsigned points_beyond(const SquareDirections& at, const Vec3& normal, float least) {
+unsigned points_beyond(const Points& points, const Vec3& normal, float least) {
   unsigned bits = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Int4 beyond = at.x[i] * normal.x() + at.y[i] * normal.y() + at.z[i] * normal.z() >
-                        broadcast<Float4>(least);
-    const Int4 four = beyond & Int4{1, 2, 4, 8};
-    bits |= static_cast<unsigned>(four[0] | four[1] | four[2] | four[3]) << (4 * i);
+  for (std::size_t i = 0; i < batches; ++i) {
+    const Lanes3& p = points[i];
+    const Int4 beyond =
+        p.x * normal.x() + p.y * normal.y() + p.z * normal.z() > broadcast<Float4>(least);
+    bits |= lane_bits(beyond) << (4 * i);
   }
-  return bits & all_points;
+  return bits;
 }
 
-unsigned points_within(const SquareDirections& at, const Belt& belt) {
-  return points_beyond(at, belt.normal, -belt.sine) & ~points_beyond(at, belt.normal, belt.sine);
+/// Bits of those of the points that a solid hides.
+unsigned points_behind(const Points& points, const Obstacle& obstacle) {
+  const Eigen::Matrix3f& m = obstacle.to_object;
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < batches; ++i) {
+    const auto along = [&](int axis) {
+      return m(axis, 0) * points[i].x + m(axis, 1) * points[i].y + m(axis, 2) * points[i].z;
+    };
+    const Lanes3 directions = {along(0), along(1), along(2)};
+    bits |= lane_bits(rays_meet(*obstacle.solid, obstacle.origin, directions)) << (4 * i);
+  }
+  return bits;
 }
-
-Vec3 point_of(const SquareDirections& at, unsigned index) {
-  const int lane = static_cast<int>(index % 4);
-  return {at.x[index / 4][lane], at.y[index / 4][lane], at.z[index / 4][lane]};
-}
-
-/// The one that a long shape's axis and the origin span: with its axis' ends at a and b, the shape
-/// lies within `radius` of what is between them.
-Belt belt_around(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) {
-  const Eigen::Vector3d along = b - a;
-  const Eigen::Vector3d normal = a.cross(b);
-  const double t = std::clamp(-a.dot(along) / along.squaredNorm(), 0.0, 1.0);
-  const double distance = (a + t * along).norm();
-  if (distance <= radius || normal.norm() < 1e-9 * a.norm() * b.norm())
-    return {};
-  return {normal.normalized().cast<float>(), static_cast<float>(radius / (distance - radius))};
-}
-
-Belt belt_of(const Solid& solid, const Eigen::Vector3d& origin) {
-  if (solid.kind == SolidKind::Torus || solid.kind == SolidKind::Disk)
-    return {};
-  const Eigen::Matrix3d& axes = solid.to_world.linear;
-  Eigen::Index longest = 0;
-  axes.colwise().squaredNorm().maxCoeff(&longest);
-  const Eigen::Vector3d axis = axes.col(longest);
-  const double radius = std::sqrt(std::max(0.0, axes.squaredNorm() - axis.squaredNorm()));
-  const Eigen::Vector3d middle = solid.to_world.offset - origin;
-  return belt_around(middle - axis, middle + axis, radius);
-}
-
-bool is_convex(const Solid& solid) { return solid.kind != SolidKind::Torus; }
 
 /// One square, and those of its points above the horizon that nothing hides so far. The points are
 /// worked out only once something may be in their way.
@@ -94,7 +86,7 @@ public:
     if (part == RegionPart::Outside)
       return part;
     if (obstacle.solid != nullptr)
-      return obstacle.belt.is_beside(m_cap) ? RegionPart::Outside : look_past_solid(obstacle);
+      return look_past_solid(obstacle);
     if (part == RegionPart::Partial)
       hide(points_beyond(points(), obstacle.bounds.axis, obstacle.bounds.cosine));
     return part;
@@ -104,30 +96,26 @@ public:
   float seen() const {
     if (!m_points || m_left == m_above)
       return 1;
-    return std::max(least_seen, static_cast<float>(points_weight(m_left)) /
-                                    static_cast<float>(points_weight(m_above)));
+    return std::max(least_seen, static_cast<float>(std::popcount(m_left)) /
+                                    static_cast<float>(std::popcount(m_above)));
   }
 
 private:
   RegionPart look_past_solid(const Obstacle& obstacle) {
-    const unsigned near = points_beyond(points(), obstacle.bounds.axis, obstacle.bounds.cosine) &
-                          points_within(points(), obstacle.belt);
-    unsigned met = 0;
-    for (unsigned rest = m_left & near; rest != 0; rest &= rest - 1) {
-      const auto index = static_cast<unsigned>(std::countr_zero(rest));
-      if (obstacle.meet(point_of(points(), index)))
-        met |= 1U << index;
-    }
-    hide(met);
-    return met == all_points && is_convex(*obstacle.solid) ? RegionPart::Inside
-                                                           : RegionPart::Partial;
+    const RegionPart part = obstacle.outline.classify(m_cap);
+    if (part == RegionPart::Outside)
+      return part;
+    if (part == RegionPart::Inside && obstacle.solid->kind == SolidKind::Box)
+      return part;
+    hide(points_behind(points(), obstacle));
+    return RegionPart::Partial;
   }
 
   void hide(unsigned points) { m_left &= ~points; }
 
-  const SquareDirections& points() {
+  const Points& points() {
     if (!m_points) {
-      m_points = wavelet::square_directions(m_square);
+      m_points = points_of(m_square);
       m_above = points_beyond(*m_points, m_normal, 0);
       m_left = m_above;
     }
@@ -137,16 +125,12 @@ private:
   SquarePlace m_square;
   SquareCap m_cap;
   Vec3 m_normal;
-  std::optional<SquareDirections> m_points;
+  std::optional<Points> m_points;
   unsigned m_above = all_points;
   unsigned m_left = all_points;
 };
 
 } // namespace
-
-bool Obstacle::meet(const Vec3& w) const {
-  return canonical_distance(*solid, origin, to_object * w.cast<double>()) < no_hit;
-}
 
 SeenSquares::SeenSquares(const ShapeSet& shapes, const Light& light)
     : m_shapes(shapes), m_light(light), m_visibility(shapes, light) {}
@@ -174,11 +158,14 @@ void SeenSquares::add(const Solid& solid, const Eigen::Vector3d& origin) {
   if (solid.kind == SolidKind::WorldSphere)
     return;
   added.solid = &solid;
-  added.belt = belt_of(solid, origin);
-  added.belt.normal = m_light.to_light(added.belt.normal);
-  added.origin = solid.to_object.point(origin);
+  Eigen::Matrix3f to_light;
   for (int i = 0; i < 3; ++i)
-    added.to_object.col(i) = solid.to_object.vector(m_light.to_world(Vec3::Unit(i)).cast<double>());
+    to_light.col(i) = m_light.to_light(Vec3::Unit(i));
+  added.outline = outline_of(solid, origin, to_light);
+  added.origin = solid.to_object.point(origin).cast<float>();
+  for (int i = 0; i < 3; ++i)
+    added.to_object.col(i) =
+        solid.to_object.vector(m_light.to_world(Vec3::Unit(i)).cast<double>()).cast<float>();
 }
 
 void SeenSquares::look(std::span<const SquarePlace> squares, std::span<SquareView> views) {

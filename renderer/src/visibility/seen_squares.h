@@ -3,41 +3,27 @@
 // to be asked of every square that a sampler has to do with.
 
 #include "cap_region.h"
+#include "outline.h"
 
 #include <renderer/visibility.h>
 
 #include <wavelet/square_visibility.h>
 
-#include <cmath>
 #include <vector>
 
 namespace haarlight::renderer::detail {
 
-/// The directions at nearly right angles to a normal.
-struct Belt {
-  Vec3 normal = Vec3::UnitZ(); ///< unit
-  float sine = 1;              ///< of the angle that they may be off by
-
-  bool is_beside(const wavelet::SquareCap& cap) const {
-    constexpr float chord_to_sine = 1.1F; // at most, of squares of level 3 and finer
-    return std::abs(normal.dot(cap.centre)) > sine + chord_to_sine * cap.sine;
-  }
-};
-
 /// What may be in the way, as seen from some point; directions are the light's.
 struct Obstacle {
-  Cap bounds; ///< all that it hides lies within
-  const Solid* solid =
-      nullptr; ///< that rays tell the outline of; else all within `bounds` is hidden
-  Belt belt;   ///< that holds all directions to the solid
-  Eigen::Vector3d origin;
-  Eigen::Matrix3d to_object;
-
-  bool meet(const Vec3& w) const;
+  Cap bounds;                   ///< all that it hides lies within
+  Outline outline;              ///< of the box around the solid
+  const Solid* solid = nullptr; ///< that rays tell the outline of; else all in the bounds is hidden
+  Vec3 origin;                  ///< the point in the solid's frame
+  Eigen::Matrix3f to_object;    ///< of directions
 };
 
 /// Turned to one point after another. Squares that lie all within a sphere's outline or behind a
-/// plane or one convex shape, or beside all objects, are known; others are looked at in 3 × 3
+/// plane or one convex shape, or beside all objects, are known; others are looked at in eight
 /// points, for all objects together.
 class SeenSquares final : public wavelet::SquareVisibility {
 public:
