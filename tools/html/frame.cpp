@@ -31,6 +31,7 @@ figcaption { line-height: 1.3; }
 .legend div { display: flex; justify-content: space-between; font-size: 9.5px; }
 section { border-top: 2px solid #222; margin-top: 48px; } section h2 { margin-top: 14px; }
 img.wide { max-width: 100%; image-rendering: pixelated; background: #000; }
+table.values td { white-space: normal; }
 .maps figure { width: 320px; } .maps img { width: 320px; }
 sup { line-height: 0; } code { font-size: 92%; }
 </style>

@@ -39,7 +39,7 @@ public:
     }
   }
 
-  /// Down from here bins hold ever smaller energies.
+  /// Bins, by rising energy.
   std::size_t size() const { return m_bins.size(); }
   std::uint64_t count(std::size_t bin) const { return m_bins[bin].count; }
   double energy(std::size_t bin) const {

@@ -96,8 +96,8 @@ void write_comparison(const std::string& path, const ComparedMaps& maps) {
   if (has_extension(path, ".exr"))
     return write_channels(path, maps);
   std::vector<image::SheetEntry> entries = comparison_pictures(maps, 1024);
-  entries[0].caption.insert(0, "A ");
-  entries[1].caption.insert(0, "B ");
+  entries[0].caption = std::string("A ").append(maps.name_a);
+  entries[1].caption = std::string("B ").append(maps.name_b);
   image::write_png(path, image::contact_sheet(entries, {.columns = 3}));
 }
 
