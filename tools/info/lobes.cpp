@@ -26,8 +26,8 @@ double roll_of(const SetInfo& info, const MapPlace& place) {
   return info.rolls > 1 ? (place.row + 0.5) * 360 / info.rolls : 0;
 }
 
-/// In the frame of <brdf/brdf_maps.h>, whose z is the mirror direction; the normal leans towards the
-/// roll's azimuth.
+/// In the frame of <brdf/brdf_maps.h>, whose z is the mirror direction; the normal leans towards
+/// the roll's azimuth.
 Lobe lobe_of(const TreeSet& set, const MapPlace& place, Plane plane) {
   const wavelet::TreeView& tree = set.tree(place.column, place.row);
   Lobe lobe{.theta = theta_of(set.info(), place), .points = {}};
