@@ -49,7 +49,7 @@ std::vector<double> Axis::ticks() const {
 std::string Axis::tick_text(double value) const {
   if (scale == AxisScale::Linear)
     return std::to_string(std::lround(value)).append("°");
-  if (value >= 1 && value < 1e6)
+  if (value >= 1 && value < 99999)
     return std::to_string(std::lround(value));
   if (value >= 0.0099 && value < 1)
     return number_html(value);

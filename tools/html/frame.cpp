@@ -11,7 +11,8 @@ body { font: 14px/1.45 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu San
 h1 { font-size: 26px; margin: 0 0 4px; } h2 { font-size: 20px; margin: 40px 0 10px; }
 h2 small { font-weight: 400; color: #777; } h3 { font-size: 15px; margin: 24px 0 8px; }
 p, li { max-width: 860px; }
-table { display: block; overflow-x: auto; border-collapse: collapse; font-size: 12.5px; font-variant-numeric: tabular-nums; }
+table { display: block; overflow-x: auto; border-collapse: collapse; font-size: 12.5px;
+  font-variant-numeric: tabular-nums; margin-bottom: 12px; }
 th { text-align: left; font-weight: 600; color: #555; padding: 3px 9px; vertical-align: bottom; }
 th.group { text-align: center; border-bottom: 1px solid #bbb; }
 td { padding: 3px 9px; border-top: 1px solid #e8e8e8; white-space: nowrap; }
@@ -31,8 +32,8 @@ figcaption { line-height: 1.3; }
 .legend div { display: flex; justify-content: space-between; font-size: 9.5px; }
 section { border-top: 2px solid #222; margin-top: 48px; } section h2 { margin-top: 14px; }
 img.wide { max-width: 100%; image-rendering: pixelated; background: #000; }
-table.values td { white-space: normal; }
-.maps figure { width: 320px; } .maps img { width: 320px; }
+table.values td { white-space: normal; } table.values th { white-space: nowrap; }
+.maps figure { width: 384px; } .maps img { width: 384px; image-rendering: auto; }
 sup { line-height: 0; } code { font-size: 92%; }
 </style>
 )";

@@ -47,7 +47,7 @@ std::string curve(const Series& series, const Axis& x, const Axis& y) {
 void spread(std::vector<double>& heights) {
   for (std::size_t i = 1; i < heights.size(); ++i)
     heights[i] = std::max(heights[i], heights[i - 1] + label_height);
-  double limit = bottom + 4;
+  double limit = bottom - 6;
   for (std::size_t i = heights.size(); i-- > 0; limit -= label_height)
     heights[i] = std::min(heights[i], limit);
 }
@@ -63,6 +63,8 @@ std::string labels(std::vector<Series> series, const Axis& x, const Axis& y) {
   spread(heights);
   std::string svg;
   for (std::size_t i = 0; i < series.size(); ++i) {
+    if (series[i].label.empty())
+      continue;
     const auto& [end_x, end_y] = series[i].points.back();
     svg += "<path d=\"" + point('M', x.place(end_x) + 6, y.place(end_y)) +
            point('L', right + 12, heights[i]) + "\" stroke=\"" + series[i].look.colour +

@@ -10,7 +10,7 @@
 namespace haarlight::html {
 
 struct Series {
-  std::string label; ///< written at the curve's end
+  std::string label; ///< written at the curve's end, if not empty
   Look look;
   std::vector<std::pair<double, double>>
       points; ///< joined in this order; what is not positive is left out

@@ -69,7 +69,8 @@ std::string level_bars_html(const tool::TreeFigures& sum, std::size_t trees) {
 
 std::string error_curve_html(const wavelet::TreeSet& set,
                              const std::vector<wavelet::MapPlace>& trees) {
-  html::Series series{.label = "error", .look = {.colour = "#d4002a", .marker = 0}, .points = {}};
+  html::Series series{
+      .label = {}, .look = {.colour = "#d4002a", .marker = html::no_marker}, .points = {}};
   for (const KeptPoint& point : error_curve(set, trees))
     series.points.emplace_back(static_cast<double>(point.kept), point.error);
   return "<h2>Kept against error</h2>\n<p>What would be left of these trees if only so many of "

@@ -10,11 +10,13 @@ namespace {
 
 std::string slices(const Lobes& lobes, const html::PlotText& text,
                    const std::vector<double>& ticks) {
-  std::vector<html::Series> series;
-  for (std::size_t i = 0; i < lobes.lobes.size(); ++i)
-    series.push_back({lobe_name(lobes.lobes[i]),
-                      {.colour = lobe_colour(i), .marker = html::no_marker},
-                      lobes.lobes[i].points});
+  std::vector<html::Series> series(lobes.lobes.size());
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    series[i].label = lobe_name(lobes.lobes[i]);
+    series[i].look.colour = lobe_colour(i);
+    series[i].look.marker = html::no_marker;
+    series[i].points = lobes.lobes[i].points;
+  }
   return html::angle_plot(series, text, ticks);
 }
 
@@ -28,8 +30,9 @@ std::string lobes_html(const wavelet::TreeSet& set, const std::vector<wavelet::M
   const Lobes across = lobes_of(set, places, Plane::Across);
   if (!(along.scale.low > 0) || !(across.scale.low > 0))
     return "<h2>Lobes</h2>\n<p>No map holds light along its mirror direction's planes.</p>\n";
-  const std::string value = set.info().cosine ? "f_r cos, luminance" : "f_r, luminance";
-  const std::string unit = value + ", " + set.info().units;
+  const std::string unit = std::string("luminance of f_r")
+                               .append(set.info().cosine ? " cos θ, " : ", ")
+                               .append(set.info().units == "sr^-1" ? "1/sr" : set.info().units);
   return "<h2>Lobes</h2>\n<p>Luminance along lines through the mirror direction, above the "
          "horizon. What is less than a millionth of a figure's largest value, or negative, is "
          "drawn as that. In the polar plot the normal is up, the mirror directions are to the "

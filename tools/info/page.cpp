@@ -19,8 +19,11 @@ using tool::Report;
 std::string title_of(const PageInput& input) {
   std::string title = base_name(input.path);
   if (!input.tree.empty())
-    title += "[" + std::to_string(static_cast<int>(input.tree[0])) + "," +
-             std::to_string(static_cast<int>(input.tree[1])) + "]";
+    title.append("[")
+        .append(std::to_string(static_cast<int>(input.tree[0])))
+        .append(",")
+        .append(std::to_string(static_cast<int>(input.tree[1])))
+        .append("]");
   return title;
 }
 
@@ -40,7 +43,8 @@ std::string levels_html(const std::vector<tool::TreeFigures>& figures, int level
   return "<h2>Coefficients</h2>\n" + values_html(report) + "<h3>By level</h3>\n" +
          part_html(report, "levels") +
          level_bars_html(tool::sum_of(figures, levels), figures.size()) +
-         "<h3>Smallest and largest tree</h3>\n" + part_html(report, "size_per_tree");
+         (figures.size() > 1 ? "<h3>Smallest and largest tree</h3>\n" : "") +
+         (figures.size() > 1 ? part_html(report, "size_per_tree") : "");
 }
 
 } // namespace

@@ -79,7 +79,7 @@ std::string table(const tool::ComparedSets& sets, const std::vector<Judged>& map
 }
 
 std::string pictures(const tool::ComparedSets& sets, const MapPlace& place) {
-  const std::string name = " " + name_of(sets, place);
+  const std::string name = std::string(" ").append(name_of(sets, place));
   std::string html = "<div class=\"pictures maps\">\n";
   for (const image::SheetEntry& entry : tool::comparison_pictures(
            {sets.a->make(place.column, place.row), sets.b->make(place.column, place.row),
