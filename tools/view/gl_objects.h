@@ -1,0 +1,79 @@
+#pragma once
+// What a picture takes of GL: textures, one program, one image to draw to. All need a current
+// context, and are gone with their object.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haarlight::view {
+
+enum class Texel { R32F, Rgba32F, Rgba16F, R32Ui };
+
+/// A texture, 2D or 3D, without mip levels.
+class Texture {
+public:
+  /// 2D, read by texelFetch() only. @param texels row by row, as Texel says
+  /// @throws Error(Output) if it is larger than GL takes
+  Texture(Texel texel, int width, int height, const void* texels);
+  /// 3D of Rgba16F, filtered. @throws Error(Output) as above
+  Texture(int width, int height, int depth, const std::uint16_t* halves);
+  ~Texture();
+  Texture(Texture&& other) noexcept;
+  Texture(const Texture&) = delete;
+  Texture& operator=(const Texture&) = delete;
+  Texture& operator=(Texture&&) = delete;
+
+  unsigned target() const { return m_target; }
+  unsigned id() const { return m_id; }
+
+private:
+  unsigned m_target = 0;
+  unsigned m_id = 0;
+};
+
+/// A linked pair of shaders.
+class Program {
+public:
+  /// Compilation may only fail by a fault of the shaders or the driver: std::runtime_error with the
+  /// driver's words.
+  Program(const std::string& vertex, const std::string& fragment);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void use() const;
+  /// Sets a uniform of the program in use: 1 to 4 floats, or one integer.
+  void set(const char* name, const std::vector<float>& values) const;
+  void set(const char* name, int value) const;
+  /// Binds a texture to a unit and a sampler to that.
+  void set(const char* name, int unit, const Texture& texture) const;
+
+private:
+  int place(const char* name) const;
+  unsigned m_id = 0;
+};
+
+/// An image of four floats a pixel that is drawn to.
+class Canvas {
+public:
+  /// @throws Error(Output) if it is larger than GL takes
+  Canvas(int width, int height);
+  ~Canvas();
+  Canvas(const Canvas&) = delete;
+  Canvas& operator=(const Canvas&) = delete;
+
+  /// Covers it with one triangle, by the program in use, and waits until that is done.
+  void draw() const;
+  /// RGB, the row of y = 0 first. @throws std::runtime_error if GL has met an error since it began
+  std::vector<float> read() const;
+
+private:
+  int m_width;
+  int m_height;
+  unsigned m_buffer = 0;
+  unsigned m_frame = 0;
+  unsigned m_vertices = 0;
+};
+
+} // namespace haarlight::view

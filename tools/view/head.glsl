@@ -1,0 +1,6 @@
+#version 300 es
+precision highp float;
+precision highp int;
+
+const float pi = 3.14159265358979;
+
