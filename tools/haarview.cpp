@@ -96,14 +96,16 @@ double time_frames(const FrameDrawer& drawer, int level, int count) {
   return times[static_cast<std::size_t>(count / 2)];
 }
 
-void add_comparison(tool::Report& report, const std::vector<float>& rgb, const FrameDrawer& drawer,
+void add_comparison(tool::Report& report, const DrawnFrame& frame, const FrameDrawer& drawer,
                     const std::vector<float>& reference, int levels, int repeat) {
-  report.add("relative_rms", relative_rms(rgb, reference));
+  report.add("relative_rms", relative_rms(frame.rgb, reference));
   for (int level = 0; level <= levels; ++level) {
     const double ms = time_frames(drawer, level, repeat);
+    const DrawnFrame coarse = drawer.read();
     report.row("levels")
         .add("level", level)
-        .add("relative_rms", relative_rms(drawer.read(), reference))
+        .add("relative_rms", relative_rms(coarse.rgb, reference))
+        .add("accesses", coarse.accesses)
         .add("ms_per_frame", ms);
   }
 }
@@ -123,7 +125,8 @@ int view_scene(const tool::Tool& app, const Options& options) {
   const int level = options.level.value_or(automatic_level);
   drawer.draw(level); // compiles the shaders as well
   image::Picture picture(film.width, film.height);
-  picture.rgb = drawer.read();
+  const DrawnFrame frame = drawer.read();
+  picture.rgb = frame.rgb;
   write(options, picture);
   tool::Report report;
   report.add("renderer", context.renderer())
@@ -132,9 +135,10 @@ int view_scene(const tool::Tool& app, const Options& options) {
       .add("level", options.level ? std::to_string(level) : std::string("as needed"))
       .add("trees", scene.trees().size())
       .add("texture_bytes", drawer.texture_bytes())
+      .add("accesses_per_pixel", frame.accesses)
       .add("ms_per_frame", time_frames(drawer, level, options.repeat), "ms");
   if (options.compare)
-    add_comparison(report, picture.rgb, drawer, cpu_frame(scene, lamp, film.width, film.height),
+    add_comparison(report, frame, drawer, cpu_frame(scene, lamp, film.width, film.height),
                    scene.levels(), options.repeat);
   app.print(report);
   return tool::exit_ok;

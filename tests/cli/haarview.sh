@@ -69,9 +69,16 @@ expect 3 haarview cut.haar --frame picture.exr
 scene disk.json '{"type": "disk", "center": [0, 0, 0], "normal": [0, 1, 0], "radius": 1, "material": "fine"}'
 expect 3 haarview disk.json --frame picture.exr
 says "objects[3]"
+expect 4 haarview brdf.haar --size 70000x1 --frame picture.exr
+says "GL: a picture can have"
+scene many.json '{"type": "sphere", "center": [0, -0.7, 1.5], "radius": 0.3, "material": "fine"}'
+columns=$(for i in $(seq 600); do printf '"m%d": {"haar": "brdf.haar"}, ' "$i"; done)
+sed -i "s/\"floor\": {/$columns&/" many.json
+expect 4 haarview many.json --frame picture.exr
+says "GL: what is to be shown takes a texture of"
 refuses_bad_input picture.exr haarview @ --frame picture.exr
 refuses_bad_output .exr haarview brdf.haar --size 64x64 --frame @
 __EGL_VENDOR_LIBRARY_FILENAMES=/nowhere expect 4 haarview brdf.haar --frame picture.exr
 says "EGL: "
-leaves brdf.binary brdf.haar small.haar scene.json cut.haar disk.json frame.exr frame.png once.exr twice.exr
+leaves brdf.binary brdf.haar small.haar scene.json cut.haar disk.json many.json frame.exr frame.png once.exr twice.exr
 finish

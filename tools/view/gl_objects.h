@@ -1,6 +1,6 @@
 #pragma once
-// What a picture takes of GL: textures, one program, one image to draw to. All need a current
-// context, and are gone with their object.
+// What a picture takes of GL: textures, programs, an image to draw to. All need a current context,
+// of OpenGL ES 3.0 or OpenGL 3.3, and are gone with their object.
 
 #include <cstdint>
 #include <string>
@@ -13,16 +13,16 @@ enum class Texel { R32F, Rgba32F, Rgba16F, R32Ui };
 /// A texture, 2D or 3D, without mip levels.
 class Texture {
 public:
-  /// 2D, read by texelFetch() only. @param texels row by row, as Texel says
+  /// 2D, read by texelFetch() only. @param texels row by row, as Texel says, or null
   /// @throws Error(Output) if it is larger than GL takes
   Texture(Texel texel, int width, int height, const void* texels);
   /// 3D of Rgba16F, filtered. @throws Error(Output) as above
   Texture(int width, int height, int depth, const std::uint16_t* halves);
   ~Texture();
   Texture(Texture&& other) noexcept;
+  Texture& operator=(Texture&& other) noexcept;
   Texture(const Texture&) = delete;
   Texture& operator=(const Texture&) = delete;
-  Texture& operator=(Texture&&) = delete;
 
   unsigned target() const { return m_target; }
   unsigned id() const { return m_id; }
@@ -35,26 +35,49 @@ private:
 /// A linked pair of shaders.
 class Program {
 public:
-  /// Compilation may only fail by a fault of the shaders or the driver: std::runtime_error with the
-  /// driver's words.
+  /// The shaders lack their #version, which the context decides. Compilation may only fail by a
+  /// fault of the shaders or the driver: std::runtime_error with the driver's words.
   Program(const std::string& vertex, const std::string& fragment);
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
   void use() const;
-  /// Sets a uniform of the program in use: 1 to 4 floats, or one integer.
-  void set(const char* name, const std::vector<float>& values) const;
-  void set(const char* name, int value) const;
+  /// Sets a uniform, of 1 to 4 floats or one integer, if the shaders have it. All put the program
+  /// into use.
+  void set(const std::string& name, const std::vector<float>& values) const;
+  void set(const std::string& name, int value) const;
   /// Binds a texture to a unit and a sampler to that.
-  void set(const char* name, int unit, const Texture& texture) const;
+  void set(const std::string& name, int unit, const Texture& texture) const;
 
 private:
-  int place(const char* name) const;
+  int place(const std::string& name) const;
   unsigned m_id = 0;
 };
 
-/// An image of four floats a pixel that is drawn to.
+/// A rectangle of pixels, from the lower left corner as GL counts.
+struct Area {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+
+/// Covers an area of a framebuffer with one triangle, by the program in use.
+class Cover {
+public:
+  Cover();
+  ~Cover();
+  Cover(const Cover&) = delete;
+  Cover& operator=(const Cover&) = delete;
+
+  void draw_to(unsigned framebuffer, const Area& area) const;
+
+private:
+  unsigned m_vertices = 0;
+};
+
+/// A texture of four floats a pixel that is drawn to.
 class Canvas {
 public:
   /// @throws Error(Output) if it is larger than GL takes
@@ -63,17 +86,19 @@ public:
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
-  /// Covers it with one triangle, by the program in use, and waits until that is done.
-  void draw() const;
-  /// RGB, the row of y = 0 first. @throws std::runtime_error if GL has met an error since it began
+  Area area() const { return {0, 0, m_width, m_height}; }
+  const Texture& texture() const { return m_texture; }
+
+  /// Covers it by the program in use, and waits until that is done.
+  void draw(const Cover& cover) const;
+  /// RGBA, the row of y = 0 first. @throws std::runtime_error if GL has met an error since it began
   std::vector<float> read() const;
 
 private:
   int m_width;
   int m_height;
-  unsigned m_buffer = 0;
+  Texture m_texture;
   unsigned m_frame = 0;
-  unsigned m_vertices = 0;
 };
 
 } // namespace haarlight::view

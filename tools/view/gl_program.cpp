@@ -1,7 +1,5 @@
 #include <view/gl_objects.h>
 
-#include <wavelet/error.h>
-
 #include <epoxy/gl.h>
 
 #include <stdexcept>
@@ -11,8 +9,9 @@ namespace {
 
 unsigned compile(GLenum kind, const std::string& text) {
   const unsigned shader = glCreateShader(kind);
-  const char* const source = text.c_str();
-  glShaderSource(shader, 1, &source, nullptr);
+  const char* const sources[] = {
+      epoxy_is_desktop_gl() ? "#version 330 core\n" : "#version 300 es\n", text.c_str()};
+  glShaderSource(shader, 2, sources, nullptr);
   glCompileShader(shader);
   GLint good = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
@@ -42,9 +41,12 @@ Program::~Program() { glDeleteProgram(m_id); }
 
 void Program::use() const { glUseProgram(m_id); }
 
-int Program::place(const char* name) const { return glGetUniformLocation(m_id, name); }
+int Program::place(const std::string& name) const {
+  return glGetUniformLocation(m_id, name.c_str());
+}
 
-void Program::set(const char* name, const std::vector<float>& values) const {
+void Program::set(const std::string& name, const std::vector<float>& values) const {
+  use();
   const auto setter = [&] {
     switch (values.size()) {
     case 1:
@@ -60,53 +62,15 @@ void Program::set(const char* name, const std::vector<float>& values) const {
   setter(place(name), 1, values.data());
 }
 
-void Program::set(const char* name, int value) const { glUniform1i(place(name), value); }
+void Program::set(const std::string& name, int value) const {
+  use();
+  glUniform1i(place(name), value);
+}
 
-void Program::set(const char* name, int unit, const Texture& texture) const {
+void Program::set(const std::string& name, int unit, const Texture& texture) const {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(texture.target(), texture.id());
   set(name, unit);
-}
-
-Canvas::Canvas(int width, int height) : m_width(width), m_height(height) {
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
-  if (width > most || height > most)
-    throw_output_error("GL",
-                       "a picture can have " + std::to_string(most) + " pixels a side at most");
-  glGenRenderbuffers(1, &m_buffer);
-  glBindRenderbuffer(GL_RENDERBUFFER, m_buffer);
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, width, height);
-  glGenFramebuffers(1, &m_frame);
-  glBindFramebuffer(GL_FRAMEBUFFER, m_frame);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, m_buffer);
-  glGenVertexArrays(1, &m_vertices);
-}
-
-Canvas::~Canvas() {
-  glDeleteVertexArrays(1, &m_vertices);
-  glDeleteFramebuffers(1, &m_frame);
-  glDeleteRenderbuffers(1, &m_buffer);
-}
-
-void Canvas::draw() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, m_frame);
-  glBindVertexArray(m_vertices);
-  glViewport(0, 0, m_width, m_height);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glFinish();
-}
-
-std::vector<float> Canvas::read() const {
-  const std::size_t pixels = static_cast<std::size_t>(m_width) * static_cast<std::size_t>(m_height);
-  std::vector<float> rgba(4 * pixels);
-  glReadPixels(0, 0, m_width, m_height, GL_RGBA, GL_FLOAT, rgba.data());
-  if (const GLenum fault = glGetError(); fault != GL_NO_ERROR)
-    throw std::runtime_error("GL reports error " + std::to_string(fault));
-  std::vector<float> rgb(3 * pixels);
-  for (std::size_t i = 0; i < rgb.size(); ++i)
-    rgb[i] = rgba[i / 3 * 4 + i % 3];
-  return rgb;
 }
 
 } // namespace haarlight::view

@@ -71,4 +71,10 @@ Texture::~Texture() {
 Texture::Texture(Texture&& other) noexcept
     : m_target(other.m_target), m_id(std::exchange(other.m_id, 0)) {}
 
+Texture& Texture::operator=(Texture&& other) noexcept {
+  std::swap(m_target, other.m_target);
+  std::swap(m_id, other.m_id);
+  return *this;
+}
+
 } // namespace haarlight::view

@@ -57,5 +57,6 @@ void main() {
   vec3 origin = ray_origin + film.x * ray_origin_x + film.y * ray_origin_y;
   vec3 direction = normalize(ray_towards + film.x * ray_towards_x + film.y * ray_towards_y);
   Hit hit;
-  colour = vec4(nearest(origin, direction, hit) ? shade(hit, -direction) : vec3(0.0), 1.0);
+  colour.rgb = nearest(origin, direction, hit) ? shade(hit, -direction) : vec3(0.0);
+  colour.a = accesses;
 }

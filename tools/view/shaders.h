@@ -1,5 +1,6 @@
 #pragma once
-// The .glsl files of this folder, as GLSL ES 3.00.
+// The .glsl files of this folder, in what GLSL ES 3.00 and GLSL 3.30 have in common, without the
+// line that says which of them it is.
 
 #include <string>
 
@@ -10,5 +11,8 @@ std::string covering_vertex_shader();
 
 /// lamp.glsl and what it rests on.
 std::string lamp_fragment_shader();
+
+/// show.glsl and what it rests on.
+std::string show_fragment_shader();
 
 } // namespace haarlight::view

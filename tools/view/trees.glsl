@@ -28,6 +28,7 @@ vec2 sphere_to_square(vec3 w) {
 vec3 top_average(int level, ivec2 cell, float column) {
   ivec2 origin = level == top_level ? ivec2(0) : ivec2(top_side, top_side - (2 << level));
   vec3 place = vec3(vec2(origin + cell), column) + 0.5;
+  accesses += 1.0;
   return textureLod(tops, place / vec3(textureSize(tops, 0)), 0.0).rgb * top_unit;
 }
 
@@ -45,11 +46,13 @@ vec3 finer_details(int column, int level, ivec2 cell) {
   ivec2 start = cell >> (level - top_level);
   uint node = texelFetch(starts, ivec2(start.y * top_side + start.x, column), 0).r;
   vec3 sum = vec3(0.0);
+  accesses += 2.0;
   for (int l = level - top_level - 1; l >= 0 && node != 0u; --l) {
     int i = int(node) - 1;
     ivec2 place = ivec2(i % nodes_per_row, i / nodes_per_row);
     ivec2 q = (cell >> l) & 1;
     vec2 s = 1.0 - 2.0 * vec2(q);
+    accesses += 4.0;
     sum += s.x * texelFetch(coefficients, ivec2(3 * place.x, place.y), 0).rgb +
            s.y * texelFetch(coefficients, ivec2(3 * place.x + 1, place.y), 0).rgb +
            s.x * s.y * texelFetch(coefficients, ivec2(3 * place.x + 2, place.y), 0).rgb;
