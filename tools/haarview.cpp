@@ -6,6 +6,7 @@
 #include <view/cpu_frame.h>
 #include <view/egl_context.h>
 #include <view/frame.h>
+#include <view/window_options.h>
 
 #include <image/image_exr.h>
 #include <image/png.h>
@@ -32,14 +33,15 @@ struct Options {
   double exposure = 0;
   int repeat = 3;
   bool compare = false;
+  WindowOptions window;
 };
 
 void declare(tool::Tool& app, Options& options) {
   constexpr double most = 1e6;
   app.input(options.input, "SCENE.json|FILE.haar",
             "Scene of spheres and planes, or a set of a BRDF's trees by θ_r, shown on a sphere");
-  app.text(options.frame, "--frame", "OUT.exr|.png", "Picture to write; a .png is tone-mapped");
-  app.require("--frame");
+  app.text(options.frame, "--frame", "OUT.exr|.png",
+           "Picture to write, in place of a window to show; a .png is tone-mapped");
   app.text(options.size, "--size", "WxH", "Size in pixels, in place of the scene's or 256x256");
   app.value(options.level, "--level",
             "Level of the trees that all pixels take, 13 being every tree's finest; without, each "
@@ -58,6 +60,7 @@ void declare(tool::Tool& app, Options& options) {
   app.flag(options.compare, "--compare",
            "Report the relative root mean square error of the frame, and of frames at every level, "
            "against the same trees evaluated on the CPU at full level");
+  declare_window(app, options.window);
   app.offer_json();
 }
 
@@ -77,7 +80,27 @@ void check(const tool::Tool& app, const Options& options) {
   tool::check_picture_path(options.frame, "--frame");
   if (app.given("--light-position") && app.given("--light-direction"))
     throw tool::UsageError("--light-direction and --light-position: only one can be given");
-  const OutputFile trial(options.frame);
+  check_window(app, options.window, options.frame.empty());
+  for (const char* name : {"--repeat", "--compare"})
+    if (options.frame.empty() && app.given(name))
+      throw tool::UsageError(std::string(name).append(": is of --frame"));
+  if (!options.frame.empty())
+    const OutputFile trial(options.frame);
+}
+
+int view_in_window(const tool::Tool& app, Options options) {
+  WindowInput& input = options.window.input;
+  renderer::SceneDescription film;
+  if (!options.size.empty()) {
+    tool::set_film_size(options.size, film);
+    input.width = film.width;
+    input.height = film.height;
+  }
+  input.scene = options.input;
+  input.level = options.level;
+  input.lamp = lamp_of(options);
+  input.exposure = options.exposure;
+  return run_window(app, options.window);
 }
 
 void write(const Options& options, const image::Picture& picture) {
@@ -110,15 +133,21 @@ void add_comparison(tool::Report& report, const DrawnFrame& frame, const FrameDr
   }
 }
 
+void limit_threads(const tool::Tool& app) {
+  if (app.given("--threads"))
+    setenv("LP_NUM_THREADS", std::to_string(thread_count()).c_str(), 1); // llvmpipe's own
+}
+
 int view_scene(const tool::Tool& app, const Options& options) {
   check(app, options);
+  limit_threads(app);
+  if (options.frame.empty())
+    return view_in_window(app, options);
   const Lamp lamp = lamp_of(options);
   const ViewScene scene(options.input);
   renderer::SceneDescription film = scene.description();
   if (!options.size.empty())
     tool::set_film_size(options.size, film);
-  if (app.given("--threads"))
-    setenv("LP_NUM_THREADS", std::to_string(thread_count()).c_str(), 1); // llvmpipe's own
   const EglContext context;
   const FrameDrawer drawer(scene, film.width, film.height);
   drawer.set_lamp(lamp);
@@ -147,8 +176,9 @@ int view_scene(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "haarview",
-                           "Draws trees by GL, without a window: a fragment shader reconstructs "
-                           "them at the level each pixel needs.",
-                           declare, view_scene);
+  return tool::run_program(
+      argc, argv, "haarview",
+      "Shows trees by GL, in a window or a picture: a fragment shader reconstructs "
+      "them at the level each pixel needs.",
+      declare, view_scene);
 }

@@ -1,0 +1,260 @@
+#include <view/window.h>
+
+#include <view/window_choices.h>
+#include <view/window_orbit.h>
+#include <view/window_panel.h>
+#include <view/window_screen.h>
+#include <view/window_side.h>
+
+#include <wavelet/error.h>
+#include <wavelet/input_file.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+namespace haarlight::view {
+namespace {
+
+constexpr double idle_seconds = 0.1; ///< that a turn takes when nothing happens
+constexpr double poll_seconds = 0.2; ///< between looks at watched files
+
+using Clock = std::chrono::steady_clock;
+
+/// @param file trees, or a scene
+Subject subject_of(const std::string& scene, const std::string& file) {
+  return wavelet::begins_as_tree_set(InputFile(file)) ? Subject{scene, file} : Subject{file, {}};
+}
+
+/// The lamp turned about the world's axes, as LightDescription::rotate turns a probe.
+Lamp turned(Lamp lamp, const Settings& settings) {
+  constexpr float degree = std::numbers::pi_v<float> / 180;
+  const Eigen::AngleAxisf turn(settings.light_turn * degree, Vec3::UnitY());
+  const Eigen::AngleAxisf tilt(settings.light_tilt * degree, Vec3::UnitX());
+  lamp.place = turn * (tilt * lamp.place);
+  return lamp;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty())
+    return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
+  std::vector<std::string> names;
+  for (const Subject& subject : subjects)
+    names.push_back(base_name(subject.material.empty() ? subject.scene : subject.material));
+  return names;
+}
+
+class Viewer {
+public:
+  Viewer(const WindowInput& input, const std::function<void(const std::string&)>& note)
+      : m_input(input), m_note(note), m_screen(input.width, input.height, title(input)),
+        m_left(std::make_unique<Side>(Subject{input.scene, {}}, input.watch)),
+        m_orbit(m_left->description().camera) {
+    m_settings.exposure = static_cast<float>(input.exposure);
+    m_settings.level = input.level.value_or(automatic_level);
+    m_settings.panel = !input.bare;
+    m_screen.pace(!input.script.frames);
+    offer_choices();
+  }
+
+  WindowReport run() {
+    while (m_screen.is_open() && !finished())
+      turn_over();
+    m_report.renderer = m_screen.renderer();
+    m_report.width = m_screen.area().width;
+    m_report.height = m_screen.area().height;
+    m_report.milliseconds = median(m_times);
+    m_left->count_accesses();
+    m_report.accesses = m_left->accesses();
+    return std::move(m_report);
+  }
+
+private:
+  static std::string title(const WindowInput& input) {
+    return std::string("haarview: ").append(base_name(input.scene));
+  }
+
+  void offer_choices() {
+    m_materials = {m_left->subject()};
+    m_others = {Subject{}};
+    if (!m_input.against.empty()) {
+      m_others.push_back(subject_of(m_input.scene, m_input.against));
+      m_right = std::make_unique<Side>(m_others.back(), m_input.watch);
+      m_settings.against = m_shown_against = 1;
+    }
+    for (const std::string& file : material_choices(m_input.materials, m_input.scene)) {
+      m_materials.push_back({m_input.scene, file});
+      m_others.push_back({m_input.scene, file});
+    }
+    m_contents.materials = names_of(m_materials);
+    m_contents.others = names_of(m_others);
+    m_contents.others.front() = "nothing";
+  }
+
+  bool scripted() const { return m_input.script.frames.has_value(); }
+  bool finished() const { return scripted() && m_frame >= *m_input.script.frames; }
+  bool last_frame() const { return scripted() && m_frame + 1 == *m_input.script.frames; }
+  bool waits() const { return m_report.reloads + m_report.refusals < m_input.script.reloads; }
+
+  void turn_over() {
+    const bool counted = scripted() && !waits();
+    steer(m_screen.begin(counted || m_busy ? 0 : idle_seconds));
+    poll_files();
+    if (counted)
+      m_orbit.turn(m_input.script.turn / *m_input.script.frames, 0);
+    m_busy = draw(counted);
+    tell();
+    choose();
+    const bool kept = counted && last_frame() && m_input.script.screenshot;
+    m_screen.end(kept ? &m_report.picture : nullptr);
+    m_frame += counted ? 1 : 0;
+  }
+
+  void steer(const Gestures& gestures) {
+    if (gestures.reset) {
+      m_orbit = Orbit(m_left->description().camera);
+      m_settings.light_turn = m_settings.light_tilt = 0;
+    }
+    m_orbit.turn(-0.4 * gestures.orbit_x, 0.4 * gestures.orbit_y);
+    m_orbit.enlarge(std::pow(1.1, gestures.wheel));
+    const auto moved = [](float angle, double pixels, float most) {
+      return std::clamp(angle + 0.4F * static_cast<float>(pixels), -most, most);
+    };
+    const float turn = moved(m_settings.light_turn, gestures.light_x, 1000);
+    m_settings.light_turn = std::remainder(turn, 360.0F);
+    m_settings.light_tilt = moved(m_settings.light_tilt, gestures.light_y, 90);
+    m_settings.panel = m_settings.panel != gestures.panel;
+  }
+
+  void poll_files() {
+    const Clock::time_point now = Clock::now();
+    if (!m_input.watch || now < m_next_poll)
+      return;
+    m_next_poll = now + std::chrono::duration_cast<Clock::duration>(
+                            std::chrono::duration<double>(poll_seconds));
+    for (Side* side : {m_left.get(), m_right.get()})
+      if (side != nullptr && side->changed())
+        reload(*side);
+  }
+
+  void reload(Side& side) {
+    try {
+      side.reload();
+      ++m_report.reloads;
+      tell_news(side.name() + " was read again", false);
+    } catch (const Error& error) {
+      ++m_report.refusals;
+      tell_news(std::string(error.what()) + "; the version before is kept", true);
+    }
+  }
+
+  void tell_news(const std::string& text, bool bad) {
+    m_contents.news = text;
+    m_contents.bad_news = bad;
+    m_note(text);
+  }
+
+  /// @return whether anything had to be drawn anew
+  bool draw(bool always) {
+    const Area whole = m_screen.area();
+    const int width = m_right ? whole.width / 2 : whole.width;
+    bool drawn = false;
+    int x = 0;
+    for (Side* side : {m_left.get(), m_right.get()}) {
+      if (side == nullptr)
+        continue;
+      const Area area = {x, 0, std::max(width, 1), whole.height};
+      drawn = side->draw(look_in(area), always) || drawn;
+      side->show(area, static_cast<double>(m_settings.exposure));
+      x += width;
+    }
+    if (drawn) {
+      ++m_report.frames;
+      m_times.push_back(m_left->milliseconds());
+    }
+    return drawn;
+  }
+
+  Look look_in(const Area& area) const {
+    Look look;
+    look.camera = m_orbit.camera();
+    look.lamp = turned(m_input.lamp, m_settings);
+    look.level = m_settings.level;
+    look.width = std::max(area.width / m_settings.coarseness, 1);
+    look.height = std::max(area.height / m_settings.coarseness, 1);
+    return look;
+  }
+
+  void tell() {
+    m_contents.sides.clear();
+    m_contents.levels = 0;
+    for (Side* side : {m_left.get(), m_right.get()}) {
+      if (side == nullptr)
+        continue;
+      if (!m_busy || last_frame()) // not while things move: reading back takes time
+        side->count_accesses();
+      m_contents.levels = std::max(m_contents.levels, side->levels());
+      m_contents.sides.push_back(
+          {side->name(), side->accesses(), side->milliseconds(), side->texture_bytes()});
+    }
+    if (m_settings.panel)
+      show_panel(m_contents, m_settings);
+    if (m_right)
+      show_names(m_contents.sides, m_screen.area().width);
+  }
+
+  /// Opens what was chosen in the panel.
+  void choose() {
+    try {
+      exchange(m_left, m_materials[static_cast<std::size_t>(m_settings.material)]);
+      exchange(m_right, m_others[static_cast<std::size_t>(m_settings.against)]);
+      m_shown_material = m_settings.material;
+      m_shown_against = m_settings.against;
+    } catch (const Error& error) {
+      tell_news(error.what(), true);
+      m_settings.material = m_shown_material;
+      m_settings.against = m_shown_against;
+    }
+  }
+
+  void exchange(std::unique_ptr<Side>& side, const Subject& subject) {
+    if (subject == Subject())
+      side.reset();
+    else if (!side || side->subject() != subject)
+      side = std::make_unique<Side>(subject, m_input.watch);
+  }
+
+  const WindowInput& m_input;
+  const std::function<void(const std::string&)>& m_note;
+  Screen m_screen;
+  std::vector<Subject> m_materials; ///< that the left picture can be of
+  std::vector<Subject> m_others;    ///< the right one; the first is none
+  std::unique_ptr<Side> m_left;
+  std::unique_ptr<Side> m_right;
+  Orbit m_orbit;
+  Settings m_settings;
+  PanelContents m_contents;
+  int m_shown_material = 0;
+  int m_shown_against = 0;
+  Clock::time_point m_next_poll;
+  bool m_busy = true;
+  int m_frame = 0;
+  std::vector<double> m_times;
+  WindowReport m_report;
+};
+
+} // namespace
+
+WindowReport show_window(const WindowInput& input,
+                         const std::function<void(const std::string&)>& note) {
+  return Viewer(input, note).run();
+}
+
+} // namespace haarlight::view

@@ -1,0 +1,175 @@
+#include <view/window_screen.h>
+
+#include <image/png.h>
+
+#include <wavelet/error.h>
+
+#include <epoxy/gl.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+namespace haarlight::view {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) {
+  const char* reason = nullptr;
+  glfwGetError(&reason);
+  throw_output_error("window", std::string(what)
+                                   .append(reason != nullptr ? std::string(": ") + reason : "")
+                                   .append(" (--frame draws without a window)"));
+}
+
+/// GLFW while it lives.
+struct Library {
+  Library() {
+    if (glfwInit() != GLFW_TRUE)
+      refuse("cannot be opened");
+  }
+  ~Library() { glfwTerminate(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+};
+
+struct WindowDeleter {
+  void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+};
+
+std::unique_ptr<GLFWwindow, WindowDeleter> make_window(int width, int height,
+                                                       const std::string& title) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  std::unique_ptr<GLFWwindow, WindowDeleter> window(
+      glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr));
+  if (window == nullptr)
+    refuse("cannot be opened with OpenGL 3.3");
+  glfwMakeContextCurrent(window.get());
+  return window;
+}
+
+/// Dear ImGui while it lives.
+struct Controls {
+  explicit Controls(GLFWwindow* window) {
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr; // else it leaves a file in the current folder
+    ImGui::StyleColorsDark();
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+  }
+  ~Controls() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  Controls(const Controls&) = delete;
+  Controls& operator=(const Controls&) = delete;
+};
+
+bool pressed(ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false); }
+
+Gestures gestures() {
+  const ImGuiIO& io = ImGui::GetIO();
+  Gestures found;
+  if (!io.WantCaptureMouse) {
+    const auto dragged = [&](ImGuiMouseButton button, double& x, double& y) {
+      if (!ImGui::IsMouseDown(button))
+        return;
+      x = static_cast<double>(io.MouseDelta.x);
+      y = static_cast<double>(io.MouseDelta.y);
+    };
+    dragged(ImGuiMouseButton_Left, found.orbit_x, found.orbit_y);
+    dragged(ImGuiMouseButton_Right, found.light_x, found.light_y);
+    found.wheel = static_cast<double>(io.MouseWheel);
+  }
+  if (!io.WantTextInput) {
+    found.panel = pressed(ImGuiKey_Tab);
+    found.reset = ImGui::IsKeyPressed(GLFW_KEY_R, false);
+  }
+  return found;
+}
+
+/// Of the back buffer, before it is swapped.
+image::Picture read_back(const Area& area) {
+  const auto width = static_cast<std::size_t>(area.width);
+  const std::size_t row = 3 * width;
+  std::vector<unsigned char> codes(row * static_cast<std::size_t>(area.height));
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glReadBuffer(GL_BACK);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, area.width, area.height, GL_RGB, GL_UNSIGNED_BYTE, codes.data());
+  image::Picture picture(area.width, area.height);
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const std::size_t y = static_cast<std::size_t>(area.height) - 1 - i / row;
+    picture.rgb[y * row + i % row] = image::srgb_value(codes[i]);
+  }
+  return picture;
+}
+
+} // namespace
+
+struct Screen::Parts {
+  Library library;
+  std::unique_ptr<GLFWwindow, WindowDeleter> window;
+  Controls controls;
+
+  Parts(int width, int height, const std::string& title)
+      : window(make_window(width, height, title)), controls(window.get()) {}
+};
+
+Screen::Screen(int width, int height, const std::string& title)
+    : m_parts(std::make_unique<Parts>(width, height, title)) {
+  pace(true);
+}
+
+Screen::~Screen() = default;
+
+bool Screen::is_open() const { return glfwWindowShouldClose(m_parts->window.get()) == GLFW_FALSE; }
+
+Gestures Screen::begin(double patience) {
+  if (patience > 0)
+    glfwWaitEventsTimeout(patience);
+  else
+    glfwPollEvents();
+  if (glfwGetKey(m_parts->window.get(), GLFW_KEY_ESCAPE) == GLFW_PRESS)
+    glfwSetWindowShouldClose(m_parts->window.get(), GLFW_TRUE);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glClearColor(0.08F, 0.08F, 0.08F, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  return gestures();
+}
+
+void Screen::end(image::Picture* picture) {
+  ImGui::Render();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  if (picture != nullptr)
+    *picture = read_back(area());
+  glfwSwapBuffers(m_parts->window.get());
+}
+
+Area Screen::area() const {
+  Area area;
+  glfwGetFramebufferSize(m_parts->window.get(), &area.width, &area.height);
+  return {0, 0, std::max(area.width, 1), std::max(area.height, 1)};
+}
+
+std::string Screen::renderer() const {
+  return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+}
+
+void Screen::pace(bool paced) { glfwSwapInterval(paced ? 1 : 0); }
+
+} // namespace haarlight::view
