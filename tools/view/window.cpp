@@ -17,9 +17,11 @@
 namespace haarlight::view {
 namespace {
 
-constexpr double idle_seconds = 0.1; ///< that a turn takes when nothing happens
-constexpr double poll_seconds = 0.2; ///< between looks at watched files
+constexpr double idle_seconds = 0.1;       ///< that a turn takes when nothing happens
+constexpr double moving_milliseconds = 60; ///< for a picture while things are moved
+constexpr double poll_seconds = 0.2;       ///< between looks at watched files
 
+using renderer::CameraDescription;
 using Clock = std::chrono::steady_clock;
 
 /// @param file trees, or a scene
@@ -34,6 +36,16 @@ Lamp turned(Lamp lamp, const Settings& settings) {
   const Eigen::AngleAxisf tilt(settings.light_tilt * degree, Vec3::UnitX());
   lamp.place = turn * (tilt * lamp.place);
   return lamp;
+}
+
+/// A camera that shows in a narrow area what the film's sides would.
+CameraDescription widened(CameraDescription camera, const renderer::SceneDescription& film,
+                          const Area& area) {
+  const double missing = std::max(1.0, 1.0 * film.width * area.height / film.height / area.width);
+  const double half = camera.fov * std::numbers::pi / 360;
+  camera.fov = std::atan(missing * std::tan(half)) * 360 / std::numbers::pi;
+  camera.height *= missing;
+  return camera;
 }
 
 double median(std::vector<double> values) {
@@ -122,6 +134,7 @@ private:
       m_orbit = Orbit(m_left->description().camera);
       m_settings.light_turn = m_settings.light_tilt = 0;
     }
+    m_moving = gestures.moving;
     m_orbit.turn(-0.4 * gestures.orbit_x, 0.4 * gestures.orbit_y);
     m_orbit.enlarge(std::pow(1.1, gestures.wheel));
     const auto moved = [](float angle, double pixels, float most) {
@@ -171,7 +184,7 @@ private:
       if (side == nullptr)
         continue;
       const Area area = {x, 0, std::max(width, 1), whole.height};
-      drawn = side->draw(look_in(area), always) || drawn;
+      drawn = side->draw(look_in(area, *side), always) || drawn;
       side->show(area, static_cast<double>(m_settings.exposure));
       x += width;
     }
@@ -182,14 +195,24 @@ private:
     return drawn;
   }
 
-  Look look_in(const Area& area) const {
+  Look look_in(const Area& area, const Side& side) const {
+    const int coarseness =
+        std::max(m_settings.coarseness, m_moving ? coarseness_to_move(area, side) : 1);
     Look look;
-    look.camera = m_orbit.camera();
+    look.camera = widened(m_orbit.camera(), m_left->description(), area);
     look.lamp = turned(m_input.lamp, m_settings);
     look.level = m_settings.level;
-    look.width = std::max(area.width / m_settings.coarseness, 1);
-    look.height = std::max(area.height / m_settings.coarseness, 1);
+    look.width = std::max(area.width / coarseness, 1);
+    look.height = std::max(area.height / coarseness, 1);
     return look;
+  }
+
+  /// Pixels of the window, along a side of one of the picture's, that let a picture be drawn in
+  /// time.
+  static int coarseness_to_move(const Area& area, const Side& side) {
+    const double milliseconds = side.milliseconds_per_pixel() * area.width * area.height;
+    const double coarseness = std::sqrt(milliseconds / moving_milliseconds);
+    return static_cast<int>(std::ceil(std::clamp(coarseness, 1.0, 8.0)));
   }
 
   void tell() {
@@ -244,6 +267,7 @@ private:
   int m_shown_material = 0;
   int m_shown_against = 0;
   Clock::time_point m_next_poll;
+  bool m_moving = false;
   bool m_busy = true;
   int m_frame = 0;
   std::vector<double> m_times;

@@ -94,8 +94,9 @@ void show_names(const std::vector<SideFigures>& sides, int width) {
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const char* const name = sides[i].name.c_str();
     const float middle = (static_cast<float>(i) + 0.5F) * breadth;
-    list->AddText(ImVec2(middle - ImGui::CalcTextSize(name).x / 2, bottom),
-                  IM_COL32(230, 230, 230, 255), name);
+    const ImVec2 place(middle - ImGui::CalcTextSize(name).x / 2, bottom);
+    list->AddText(ImVec2(place.x + 1, place.y + 1), IM_COL32_BLACK, name);
+    list->AddText(place, IM_COL32_WHITE, name);
   }
 }
 

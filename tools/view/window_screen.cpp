@@ -80,6 +80,7 @@ bool pressed(ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key),
 Gestures gestures() {
   const ImGuiIO& io = ImGui::GetIO();
   Gestures found;
+  found.moving = ImGui::IsAnyMouseDown();
   if (!io.WantCaptureMouse) {
     const auto dragged = [&](ImGuiMouseButton button, double& x, double& y) {
       if (!ImGui::IsMouseDown(button))

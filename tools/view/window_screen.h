@@ -15,9 +15,10 @@ struct Gestures {
   double orbit_y = 0; ///< and down
   double light_x = 0; ///< with the right button
   double light_y = 0;
-  double wheel = 0;   ///< notches away from the user
-  bool reset = false; ///< R
-  bool panel = false; ///< Tab
+  double wheel = 0;    ///< notches away from the user
+  bool reset = false;  ///< R
+  bool panel = false;  ///< Tab
+  bool moving = false; ///< a button of the mouse is down
 };
 
 /// Its context is current to the thread that made it while it lives. One per process at a time.

@@ -50,6 +50,9 @@ public:
   bool draw(const Look& look, bool always);
   /// Of the picture drawn last.
   double milliseconds() const { return m_milliseconds; }
+  double milliseconds_per_pixel() const {
+    return m_drawn ? m_milliseconds / (1.0 * m_drawn->width * m_drawn->height) : 0;
+  }
   /// Of textures that hold trees, on average over pixels that have any, in the picture that was
   /// counted last.
   double accesses() const { return m_accesses; }
