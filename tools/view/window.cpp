@@ -227,6 +227,7 @@ private:
       m_contents.sides.push_back(
           {side->name(), side->accesses(), side->milliseconds(), side->texture_bytes()});
     }
+    m_settings.level = std::min(m_settings.level, m_contents.levels);
     if (m_settings.panel)
       show_panel(m_contents, m_settings);
     if (m_right)

@@ -14,6 +14,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace haarlight::view {
 namespace {
@@ -36,6 +38,8 @@ struct Library {
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 };
+
+enum class Key { Escape, Tab, R };
 
 struct WindowDeleter {
   void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
@@ -75,8 +79,6 @@ struct Controls {
   Controls& operator=(const Controls&) = delete;
 };
 
-bool pressed(ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false); }
-
 Gestures gestures() {
   const ImGuiIO& io = ImGui::GetIO();
   Gestures found;
@@ -91,10 +93,6 @@ Gestures gestures() {
     dragged(ImGuiMouseButton_Left, found.orbit_x, found.orbit_y);
     dragged(ImGuiMouseButton_Right, found.light_x, found.light_y);
     found.wheel = static_cast<double>(io.MouseWheel);
-  }
-  if (!io.WantTextInput) {
-    found.panel = pressed(ImGuiKey_Tab);
-    found.reset = ImGui::IsKeyPressed(GLFW_KEY_R, false);
   }
   return found;
 }
@@ -122,9 +120,21 @@ struct Screen::Parts {
   Library library;
   std::unique_ptr<GLFWwindow, WindowDeleter> window;
   Controls controls;
+  std::array<bool, 3> down = {};
 
   Parts(int width, int height, const std::string& title)
-      : window(make_window(width, height, title)), controls(window.get()) {}
+      : window(make_window(width, height, title)), controls(window.get()) {
+    glfwSetInputMode(window.get(), GLFW_STICKY_KEYS,
+                     GLFW_TRUE); // keys struck while a picture is drawn
+  }
+
+  /// Once for each time the key goes down.
+  bool struck(Key key) {
+    static constexpr std::array codes = {GLFW_KEY_ESCAPE, GLFW_KEY_TAB, GLFW_KEY_R};
+    const auto i = static_cast<std::size_t>(key);
+    const bool before = std::exchange(down[i], glfwGetKey(window.get(), codes[i]) == GLFW_PRESS);
+    return down[i] && !before;
+  }
 };
 
 Screen::Screen(int width, int height, const std::string& title)
@@ -141,7 +151,7 @@ Gestures Screen::begin(double patience) {
     glfwWaitEventsTimeout(patience);
   else
     glfwPollEvents();
-  if (glfwGetKey(m_parts->window.get(), GLFW_KEY_ESCAPE) == GLFW_PRESS)
+  if (m_parts->struck(Key::Escape))
     glfwSetWindowShouldClose(m_parts->window.get(), GLFW_TRUE);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
@@ -149,7 +159,10 @@ Gestures Screen::begin(double patience) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glClearColor(0.08F, 0.08F, 0.08F, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  return gestures();
+  Gestures found = gestures();
+  found.panel = m_parts->struck(Key::Tab);
+  found.reset = m_parts->struck(Key::R);
+  return found;
 }
 
 void Screen::end(image::Picture* picture) {
