@@ -57,6 +57,31 @@ double median(std::vector<double> values) {
 }
 
 std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
+  std::vector<std::string> names(subjects.size());
+  std::transform(subjects.begin(), subjects.end(), names.begin(),
+                 [](const Subject& subject) { return subject.name(); });
+  return names;
+}
+
+/// A camera that shows in a narrow area what the film's sides would.
+CameraDescription widened(CameraDescription camera, const renderer::SceneDescription& film,
+                          const Area& area) {
+  const double missing = std::max(1.0, 1.0 * film.width * area.height / film.height / area.width);
+  const double half = camera.fov * std::numbers::pi / 360;
+  camera.fov = std::atan(missing * std::tan(half)) * 360 / std::numbers::pi;
+  camera.height *= missing;
+  return camera;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty())
+    return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
   std::vector<std::string> names;
   for (const Subject& subject : subjects)
     names.push_back(base_name(subject.material.empty() ? subject.scene : subject.material));
@@ -161,7 +186,7 @@ private:
     try {
       side.reload();
       ++m_report.reloads;
-      tell_news(side.name() + " was read again", false);
+      tell_news(side.subject().name() + " was read again", false);
     } catch (const Error& error) {
       ++m_report.refusals;
       tell_news(std::string(error.what()) + "; the version before is kept", true);
@@ -225,7 +250,7 @@ private:
         side->count_accesses();
       m_contents.levels = std::max(m_contents.levels, side->levels());
       m_contents.sides.push_back(
-          {side->name(), side->accesses(), side->milliseconds(), side->texture_bytes()});
+          {side->subject().name(), side->accesses(), side->milliseconds(), side->texture_bytes()});
     }
     m_settings.level = std::min(m_settings.level, m_contents.levels);
     if (m_settings.panel)

@@ -1,7 +1,6 @@
 #include <view/window_side.h>
 
 #include <wavelet/error.h>
-#include <wavelet/input_file.h>
 
 #include <list>
 
@@ -87,10 +86,6 @@ ViewScene open(SceneDescription scene, bool copied) {
 Side::Side(Subject subject, bool watched)
     : m_subject(std::move(subject)), m_watched(watched), m_watch({}) {
   load();
-}
-
-std::string Side::name() const {
-  return base_name(m_subject.material.empty() ? m_subject.scene : m_subject.material);
 }
 
 void Side::load() {

@@ -4,6 +4,8 @@
 #include <view/frame.h>
 #include <view/window_watch.h>
 
+#include <wavelet/input_file.h>
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +17,9 @@ struct Subject {
   std::string scene;    ///< a scene file, or a BRDF's set on a sphere
   std::string material; ///< trees in place of the scene's first material, or empty
   bool operator==(const Subject&) const = default;
+
+  /// Of the file that tells this subject from another.
+  std::string name() const { return base_name(material.empty() ? scene : material); }
 };
 
 /// All that a picture of a subject depends on.
@@ -34,8 +39,6 @@ public:
   Side(Subject subject, bool watched);
 
   const Subject& subject() const { return m_subject; }
-  /// Names the file that tells this side from another.
-  std::string name() const;
   const renderer::SceneDescription& description() const { return m_description; }
   int levels() const { return m_levels; }
   std::size_t texture_bytes() const { return m_drawer->texture_bytes(); }
