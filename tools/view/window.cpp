@@ -63,31 +63,6 @@ std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
   return names;
 }
 
-/// A camera that shows in a narrow area what the film's sides would.
-CameraDescription widened(CameraDescription camera, const renderer::SceneDescription& film,
-                          const Area& area) {
-  const double missing = std::max(1.0, 1.0 * film.width * area.height / film.height / area.width);
-  const double half = camera.fov * std::numbers::pi / 360;
-  camera.fov = std::atan(missing * std::tan(half)) * 360 / std::numbers::pi;
-  camera.height *= missing;
-  return camera;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty())
-    return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
-  std::vector<std::string> names;
-  for (const Subject& subject : subjects)
-    names.push_back(base_name(subject.material.empty() ? subject.scene : subject.material));
-  return names;
-}
-
 class Viewer {
 public:
   Viewer(const WindowInput& input, const std::function<void(const std::string&)>& note)
