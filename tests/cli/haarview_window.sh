@@ -9,7 +9,8 @@ source "$(dirname "$0")/lib.sh" "$1"
 for name in brdf other; do
   "$bin/brdf2maps" $name.binary -q --size 64 --theta 16 --conservation-tolerance 1 -o $name.haar >/dev/null
 done
-inputs="brdf.binary brdf.haar other.binary other.haar"
+"$bin/probesynth" --scene studio --size 32 -q -o studio.hdr >/dev/null
+inputs="brdf.binary brdf.haar other.binary other.haar studio.hdr"
 
 # what goes wrong without a screen
 unset DISPLAY WAYLAND_DISPLAY
@@ -25,6 +26,7 @@ for wrong in "--turn 30" "--frames 0" "--frames 2 --screenshot picture.jpg" "--s
   expect 2 haarview brdf.haar $wrong
 done
 expect 4 haarview brdf.haar --frames 1 --screenshot nowhere/picture.png
+expect 2 haarview brdf.haar --environment
 # shellcheck disable=SC2086
 leaves $inputs
 
@@ -73,13 +75,11 @@ END
 }
 number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
 
-look="--size 120x90 --light-direction 1,1,2"
 # saved NAME ARGUMENTS…: a picture of the window without its controls
 saved() {
   local name=$1
   shift
-  # shellcheck disable=SC2086
-  expect 0 haarview "$@" $look --no-panel --screenshot "$name.png"
+  expect 0 haarview "$@" --size 120x90 --no-panel --screenshot "$name.png"
 }
 
 saved still brdf.haar --frames 1
@@ -90,17 +90,20 @@ same turned.png again.png
 saved round brdf.haar --frames 2 --turn 360
 saved other other.haar --frames 1
 saved beside brdf.haar --against other.haar --frames 1
-# shellcheck disable=SC2086
-expect 0 haarview brdf.haar $look --frame frame.png
-# shellcheck disable=SC2086
-expect 0 haarview brdf.haar --size 400x300 --light-direction 1,1,2 --frames 2 --screenshot panel.png --json
+saved around brdf.haar --frames 1 --probe studio.hdr --light-level 5
+expect 0 haarview brdf.haar --size 120x90 --frame frame.png
+expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --frame frame_around.png
+expect 0 haarview brdf.haar --size 400x300 --frames 2 --screenshot panel.png --json
 if command -v python3 >/dev/null; then
   check "valid JSON" python3 -m json.tool "$log/out"
-  pixels still.png frame.png
-  number "$brightness > 10 && $difference < 0.5"
+  for kind in "still frame" "around frame_around"; do
+    # shellcheck disable=SC2086
+    pixels ${kind/ /.png }.png
+    number "$brightness > 10 && $difference < 0.5"
+  done
   pixels round.png frame.png
   number "$difference < 0.5"
-  for another in turned other beside; do
+  for another in turned other beside around; do
     pixels $another.png still.png
     number "$brightness > 10 && $difference > 1"
   done
@@ -111,8 +114,7 @@ fi
 # watched WAY NAME: a file is rewritten in that way again and again until the window has tried to read it once
 watched() {
   cp brdf.haar watched.haar
-  # shellcheck disable=SC2086
-  timeout 60 "$bin/haarview" watched.haar $look --no-panel --watch --reloads 1 --frames 1 --json \
+  timeout 60 "$bin/haarview" watched.haar --size 120x90 --no-panel --watch --reloads 1 --frames 1 --json \
     --screenshot "$2.png" >"$log/out" 2>"$log/err" &
   local window=$!
   while sleep 1 && kill -0 "$window" 2>/dev/null; do "$1" watched.haar; done
@@ -134,5 +136,6 @@ says "watched.haar"
 says "the version before is kept"
 
 # shellcheck disable=SC2086
-leaves $inputs still.png turned.png again.png round.png other.png beside.png frame.png panel.png watched.haar reloaded.png kept.png
+leaves $inputs still.png turned.png again.png round.png other.png beside.png around.png frame.png frame_around.png \
+  panel.png watched.haar reloaded.png kept.png
 finish

@@ -1,5 +1,6 @@
 #include <view/cpu_frame.h>
 
+#include <renderer/product_integral.h>
 #include <wavelet/parallel.h>
 
 #include <algorithm>
@@ -43,6 +44,16 @@ std::vector<float> cpu_frame(const ViewScene& scene, const Lamp& lamp, int width
     }
   });
   return rgb;
+}
+
+std::vector<float> cpu_environment_frame(const SceneDescription& scene, int width, int height) {
+  SceneDescription trees = scene;
+  trees.light.background = false;
+  for (MaterialDescription& material : trees.materials)
+    if (!material.haar.empty())
+      material.brdf.clear();
+  const LoadedScene loaded(trees, {}, SamplerKind::Light, false, product_integral_needs);
+  return render_product_integral(loaded, {}, width, height).film.rgb;
 }
 
 double relative_rms(const std::vector<float>& frame, const std::vector<float>& reference) {

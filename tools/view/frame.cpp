@@ -1,9 +1,6 @@
 #include <view/frame.h>
 
-#include <view/packed_trees.h>
 #include <view/shaders.h>
-
-#include <wavelet/error.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,29 +14,6 @@ namespace {
 
 std::vector<float> list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// The two texels of each object that scene.glsl reads.
-std::vector<float> object_texels(const ViewScene& scene) {
-  const ShapeSet& shapes = scene.shapes();
-  std::vector<float> texels(8 * static_cast<std::size_t>(shapes.size()));
-  const auto put = [&](int object, const Eigen::Vector3d& v, double w, float kind) {
-    const Columns& columns = scene.columns_of(object);
-    const float both[8] = {static_cast<float>(v.x()),
-                           static_cast<float>(v.y()),
-                           static_cast<float>(v.z()),
-                           static_cast<float>(w),
-                           kind,
-                           static_cast<float>(columns.first),
-                           static_cast<float>(columns.count),
-                           static_cast<float>(columns.levels)};
-    std::copy(both, both + 8, &texels[8 * static_cast<std::size_t>(object)]);
-  };
-  for (const detail::Solid& solid : shapes.solids())
-    put(solid.object, solid.center, solid.radius, 0);
-  for (const detail::WorldPlane& plane : shapes.planes())
-    put(plane.object, plane.normal, plane.height, 1);
-  return texels;
-}
-
 /// A ray's direction, long enough to be linear in the film's coordinates.
 Vec3 towards(const Ray& ray, const CameraDescription& camera) {
   if (camera.projection == Projection::Orthographic)
@@ -47,51 +21,29 @@ Vec3 towards(const Ray& ray, const CameraDescription& camera) {
   return ray.direction / ray.direction.dot((camera.to - camera.from).normalized());
 }
 
-void check_nodes(const std::vector<wavelet::TreeView>& trees) {
-  std::uint64_t nodes = 0;
-  for (const wavelet::TreeView& tree : trees)
-    nodes += tree.node_count;
-  if (nodes >= 1U << 28U)
-    throw_output_error("GL", "trees of " + std::to_string(nodes) +
-                                 " nodes are to be shown; 2^28 - 1 are possible");
-}
-
 } // namespace
 
 FrameDrawer::FrameDrawer(const ViewScene& scene, int width, int height)
     : m_lamp(covering_vertex_shader(), lamp_fragment_shader()),
+      m_environment(covering_vertex_shader(), environment_fragment_shader()),
       m_show(covering_vertex_shader(), show_fragment_shader()),
       m_camera(scene.description().camera) {
   resize(width, height);
   add_trees(scene);
+  add_lobes(scene);
   add_objects(scene);
   set_lamp({});
+  turn_light(Eigen::Matrix3f::Identity());
+  show_background(true);
+  set_tolerance(environment_tolerance);
 }
 
-void FrameDrawer::add(const std::string& name, Texture texture) {
-  m_textures.emplace_back(name, std::move(texture));
-}
+void FrameDrawer::turn_light(const Eigen::Matrix3f& to_world) const { set("to_world", to_world); }
 
-void FrameDrawer::add_trees(const ViewScene& scene) {
-  check_nodes(scene.trees());
-  const PackedTrees packed = pack_trees(scene.trees());
-  add("tops", Texture(slice_width, slice_height, packed.columns, packed.tops.data()));
-  add("starts", Texture(Texel::R32Ui, top_side * top_side, packed.columns, packed.starts.data()));
-  add("scales", Texture(Texel::R32F, packed.columns, 1, packed.scales.data()));
-  add("links", Texture(Texel::R32Ui, nodes_per_row, packed.node_rows, packed.links.data()));
-  add("coefficients",
-      Texture(Texel::Rgba16F, 3 * nodes_per_row, packed.node_rows, packed.coefficients.data()));
-  m_lamp.set("top_unit", std::vector<float>{packed.top_unit});
-  m_texture_bytes += packed.bytes();
-}
+void FrameDrawer::show_background(bool shown) const { set("background", shown ? 1 : 0); }
 
-void FrameDrawer::add_objects(const ViewScene& scene) {
-  const int count = scene.shapes().size();
-  const std::vector<float> texels = object_texels(scene);
-  add("objects",
-      Texture(Texel::Rgba32F, 2, std::max(count, 1), count > 0 ? texels.data() : nullptr));
-  m_lamp.set("object_count", count);
-  m_texture_bytes += 4 * texels.size();
+void FrameDrawer::set_tolerance(float tolerance) const {
+  set("tolerance", std::vector<float>{tolerance});
 }
 
 void FrameDrawer::resize(int width, int height) {
@@ -114,28 +66,28 @@ void FrameDrawer::aim() const {
   const Ray down = camera.generate_ray(0, h);
   const Vec3 direction = towards(corner, m_camera);
   const Vec3 direction_y = (towards(down, m_camera) - direction) / h;
-  m_lamp.set("ray_origin", list(corner.origin));
-  m_lamp.set("ray_origin_x", list((right.origin - corner.origin) / w));
-  m_lamp.set("ray_origin_y", list((down.origin - corner.origin) / h));
-  m_lamp.set("ray_towards", list(direction));
-  m_lamp.set("ray_towards_x", list((towards(right, m_camera) - direction) / w));
-  m_lamp.set("ray_towards_y", list(direction_y));
-  m_lamp.set("pixel_size",
-             std::vector<float>{(down.origin - corner.origin).norm() / h, direction_y.norm()});
+  set("ray_origin", list(corner.origin));
+  set("ray_origin_x", list((right.origin - corner.origin) / w));
+  set("ray_origin_y", list((down.origin - corner.origin) / h));
+  set("ray_towards", list(direction));
+  set("ray_towards_x", list((towards(right, m_camera) - direction) / w));
+  set("ray_towards_y", list(direction_y));
+  set("pixel_size",
+      std::vector<float>{(down.origin - corner.origin).norm() / h, direction_y.norm()});
 }
 
 void FrameDrawer::set_lamp(const Lamp& lamp) const {
   const Vec3 v = lamp.at_point ? lamp.place : lamp.place.normalized();
-  m_lamp.set("lamp", std::vector<float>{v.x(), v.y(), v.z(), lamp.at_point ? 1.0F : 0.0F});
-  m_lamp.set("irradiance",
-             std::vector<float>{lamp.irradiance[0], lamp.irradiance[1], lamp.irradiance[2]});
+  set("lamp", std::vector<float>{v.x(), v.y(), v.z(), lamp.at_point ? 1.0F : 0.0F});
+  set("irradiance", std::vector<float>{lamp.irradiance[0], lamp.irradiance[1], lamp.irradiance[2]});
 }
 
-double FrameDrawer::draw(int level) const {
-  m_lamp.set("forced_level", level);
+double FrameDrawer::draw(Lighting lighting, int level) const {
+  const Program& program = lighting == Lighting::Lamp ? m_lamp : m_environment;
+  program.set("forced_level", level);
   int unit = 0;
-  for (const auto& [name, texture] : m_textures)
-    m_lamp.set(name, unit++, texture);
+  for (const Named& named : m_textures)
+    program.set(named.name, unit++, named.texture);
   const auto begin = std::chrono::steady_clock::now();
   m_canvas->draw(m_cover);
   const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - begin;
@@ -159,7 +111,8 @@ DrawnFrame FrameDrawer::read() const {
 
 void FrameDrawer::show(unsigned framebuffer, const Area& area, double exposure) const {
   const auto number = [](int value) { return static_cast<float>(value); };
-  m_show.set("area", {number(area.x), number(area.y), number(area.width), number(area.height)});
+  m_show.set("area", std::vector<float>{number(area.x), number(area.y), number(area.width),
+                                        number(area.height)});
   m_show.set("exposure", std::vector<float>{static_cast<float>(exposure)});
   m_show.set("picture", 0, m_canvas->texture());
   m_cover.draw_to(framebuffer, area);

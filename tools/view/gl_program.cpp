@@ -67,6 +67,11 @@ void Program::set(const std::string& name, int value) const {
   glUniform1i(place(name), value);
 }
 
+void Program::set(const std::string& name, const Eigen::Matrix3f& value) const {
+  use();
+  glUniformMatrix3fv(place(name), 1, GL_FALSE, value.data());
+}
+
 void Program::set(const std::string& name, int unit, const Texture& texture) const {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(texture.target(), texture.id());

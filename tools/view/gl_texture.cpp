@@ -55,6 +55,19 @@ Texture::Texture(Texel texel, int width, int height, const void* texels) : m_tar
   glTexImage2D(m_target, 0, format.internal, width, height, 0, format.format, format.type, texels);
 }
 
+Texture::Texture(Texel texel, const std::vector<const void*>& levels) : m_target(GL_TEXTURE_2D) {
+  const int finest = static_cast<int>(levels.size()) - 1;
+  check_side(GL_MAX_TEXTURE_SIZE, 1 << finest);
+  m_id = make_texture(m_target, GL_NEAREST);
+  glTexParameteri(m_target, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+  const Format format = format_of(texel);
+  for (int mip = 0; mip <= finest; ++mip) {
+    const int side = 1 << (finest - mip);
+    glTexImage2D(m_target, mip, format.internal, side, side, 0, format.format, format.type,
+                 levels[static_cast<std::size_t>(mip)]);
+  }
+}
+
 Texture::Texture(int width, int height, int depth, const std::uint16_t* halves)
     : m_target(GL_TEXTURE_3D) {
   for (const int side : {width, height, depth})

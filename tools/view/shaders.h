@@ -12,6 +12,9 @@ std::string covering_vertex_shader();
 /// lamp.glsl and what it rests on.
 std::string lamp_fragment_shader();
 
+/// environment.glsl and what it rests on.
+std::string environment_fragment_shader();
+
 /// show.glsl and what it rests on.
 std::string show_fragment_shader();
 

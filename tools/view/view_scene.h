@@ -43,7 +43,9 @@ public:
 
   /// Of all materials, one after the other.
   const std::vector<wavelet::TreeView>& trees() const { return m_trees; }
-  /// Of the material of an object, among them.
+  /// Of each material, among them.
+  const std::vector<Columns>& columns() const { return m_columns; }
+  /// Of the material of an object.
   const Columns& columns_of(int object) const { return m_columns[material_of(object)]; }
   /// Of the deepest tree.
   int levels() const {

@@ -1,6 +1,7 @@
 #include <view/window.h>
 
 #include <view/window_choices.h>
+#include <view/window_light.h>
 #include <view/window_orbit.h>
 #include <view/window_panel.h>
 #include <view/window_screen.h>
@@ -13,13 +14,16 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace haarlight::view {
 namespace {
 
-constexpr double idle_seconds = 0.1;       ///< that a turn takes when nothing happens
-constexpr double moving_milliseconds = 60; ///< for a picture while things are moved
-constexpr double poll_seconds = 0.2;       ///< between looks at watched files
+constexpr double idle_seconds = 0.1;        ///< that a turn takes when nothing happens
+constexpr double moving_milliseconds = 60;  ///< for pictures while things are moved
+constexpr double still_milliseconds = 3000; ///< and while they are not
+constexpr float moving_tolerance = 0.05F;   ///< at least, of a light around, while things are moved
+constexpr double poll_seconds = 0.2;        ///< between looks at watched files
 
 using renderer::CameraDescription;
 using Clock = std::chrono::steady_clock;
@@ -29,13 +33,12 @@ Subject subject_of(const std::string& scene, const std::string& file) {
   return wavelet::begins_as_tree_set(InputFile(file)) ? Subject{scene, file} : Subject{file, {}};
 }
 
-/// The lamp turned about the world's axes, as LightDescription::rotate turns a probe.
-Lamp turned(Lamp lamp, const Settings& settings) {
+/// About the world's axes, as LightDescription::rotate turns a probe.
+Eigen::Matrix3f turn_of(const Settings& settings) {
   constexpr float degree = std::numbers::pi_v<float> / 180;
   const Eigen::AngleAxisf turn(settings.light_turn * degree, Vec3::UnitY());
   const Eigen::AngleAxisf tilt(settings.light_tilt * degree, Vec3::UnitX());
-  lamp.place = turn * (tilt * lamp.place);
-  return lamp;
+  return (turn * tilt).toRotationMatrix();
 }
 
 /// A camera that shows in a narrow area what the film's sides would.
@@ -63,6 +66,11 @@ std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
   return names;
 }
 
+template <class Choice>
+Choice& chosen(std::vector<Choice>& choices, int setting) {
+  return choices[static_cast<std::size_t>(setting)];
+}
+
 class Viewer {
 public:
   Viewer(const WindowInput& input, const std::function<void(const std::string&)>& note)
@@ -71,9 +79,14 @@ public:
         m_orbit(m_left->description().camera) {
     m_settings.exposure = static_cast<float>(input.exposure);
     m_settings.level = input.level.value_or(automatic_level);
+    m_settings.tolerance = input.tolerance;
     m_settings.panel = !input.bare;
-    m_screen.pace(!input.script.frames);
-    offer_choices();
+    m_screen.pace(!scripted());
+    m_coarseness = scripted() ? 1 : 8;
+    offer_materials();
+    offer_lights();
+    choose(m_settings);
+    m_shown = m_settings;
   }
 
   WindowReport run() {
@@ -93,13 +106,12 @@ private:
     return std::string("haarview: ").append(base_name(input.scene));
   }
 
-  void offer_choices() {
+  void offer_materials() {
     m_materials = {m_left->subject()};
     m_others = {Subject{}};
     if (!m_input.against.empty()) {
       m_others.push_back(subject_of(m_input.scene, m_input.against));
-      m_right = std::make_unique<Side>(m_others.back(), m_input.watch);
-      m_settings.against = m_shown_against = 1;
+      m_settings.against = 1;
     }
     for (const std::string& file : material_choices(m_input.materials, m_input.scene)) {
       m_materials.push_back({m_input.scene, file});
@@ -108,6 +120,23 @@ private:
     m_contents.materials = names_of(m_materials);
     m_contents.others = names_of(m_others);
     m_contents.others.front() = "nothing";
+  }
+
+  void offer_lights() {
+    m_lights = {{}};
+    m_contents.lights = {"lamp"};
+    if (!m_input.probe.empty())
+      m_lights.push_back(light_of_file(m_input.probe));
+    const renderer::LightDescription& given = m_left->description().light;
+    if (!file_of(given).empty())
+      m_lights.push_back(given);
+    m_settings.light = m_input.lighting == Lighting::Environment ? 1 : 0;
+    const std::string& neighbour = file_of(m_lights.back());
+    for (const std::string& file : light_choices({}, neighbour.empty() ? m_input.scene : neighbour))
+      if (file != file_of(chosen(m_lights, m_settings.light)) && file != neighbour)
+        m_lights.push_back(light_of_file(file));
+    for (std::size_t i = 1; i < m_lights.size(); ++i)
+      m_contents.lights.push_back(base_name(file_of(m_lights[i])));
   }
 
   bool scripted() const { return m_input.script.frames.has_value(); }
@@ -121,9 +150,11 @@ private:
     poll_files();
     if (counted)
       m_orbit.turn(m_input.script.turn / *m_input.script.frames, 0);
+    if (!scripted())
+      choose_coarseness();
     m_busy = draw(counted);
     tell();
-    choose();
+    take_choices();
     const bool kept = counted && last_frame() && m_input.script.screenshot;
     m_screen.end(kept ? &m_report.picture : nullptr);
     m_frame += counted ? 1 : 0;
@@ -134,7 +165,7 @@ private:
       m_orbit = Orbit(m_left->description().camera);
       m_settings.light_turn = m_settings.light_tilt = 0;
     }
-    m_moving = gestures.moving;
+    m_moved = std::exchange(m_moving, gestures.moving && !scripted());
     m_orbit.turn(-0.4 * gestures.orbit_x, 0.4 * gestures.orbit_y);
     m_orbit.enlarge(std::pow(1.1, gestures.wheel));
     const auto moved = [](float angle, double pixels, float most) {
@@ -154,14 +185,17 @@ private:
                             std::chrono::duration<double>(poll_seconds));
     for (Side* side : {m_left.get(), m_right.get()})
       if (side != nullptr && side->changed())
-        reload(*side);
+        reload(*side, side->subject().name());
+    if (m_light && m_light->changed())
+      reload(*m_light, m_light->name());
   }
 
-  void reload(Side& side) {
+  template <class Reloaded>
+  void reload(Reloaded& what, const std::string& name) {
     try {
-      side.reload();
+      what.reload();
       ++m_report.reloads;
-      tell_news(side.subject().name() + " was read again", false);
+      tell_news(name + " was read again", false);
     } catch (const Error& error) {
       ++m_report.refusals;
       tell_news(std::string(error.what()) + "; the version before is kept", true);
@@ -184,7 +218,7 @@ private:
       if (side == nullptr)
         continue;
       const Area area = {x, 0, std::max(width, 1), whole.height};
-      drawn = side->draw(look_in(area, *side), always) || drawn;
+      drawn = side->draw(look_in(area), always) || drawn;
       side->show(area, static_cast<double>(m_settings.exposure));
       x += width;
     }
@@ -195,35 +229,51 @@ private:
     return drawn;
   }
 
-  Look look_in(const Area& area, const Side& side) const {
-    const int coarseness =
-        std::max(m_settings.coarseness, m_moving ? coarseness_to_move(area, side) : 1);
+  Look look_in(const Area& area) const {
     Look look;
     look.camera = widened(m_orbit.camera(), m_left->description(), area);
-    look.lamp = turned(m_input.lamp, m_settings);
+    look.lamp = m_input.lamp;
+    look.to_world = turn_of(m_settings);
+    look.lamp.place = look.to_world * look.lamp.place;
+    if (m_light) {
+      look.light = m_light->squares();
+      look.to_world *= m_light->to_world();
+    }
+    look.tolerance = std::max(m_settings.tolerance, m_moving ? moving_tolerance : 0);
     look.level = m_settings.level;
-    look.width = std::max(area.width / coarseness, 1);
-    look.height = std::max(area.height / coarseness, 1);
+    look.width = std::max(area.width / m_coarseness, 1);
+    look.height = std::max(area.height / m_coarseness, 1);
     return look;
   }
 
-  /// Pixels of the window, along a side of one of the picture's, that let a picture be drawn in
-  /// time.
-  static int coarseness_to_move(const Area& area, const Side& side) {
-    const double milliseconds = side.milliseconds_per_pixel() * area.width * area.height;
-    const double coarseness = std::sqrt(milliseconds / moving_milliseconds);
-    return static_cast<int>(std::ceil(std::clamp(coarseness, 1.0, 8.0)));
+  /// Coarse while things are moved, then finer step by step while there is time for it.
+  void choose_coarseness() {
+    const double full = milliseconds_of_window();
+    const int finer = (m_coarseness + 1) / 2;
+    if (m_moving)
+      m_coarseness =
+          static_cast<int>(std::ceil(std::clamp(std::sqrt(full / moving_milliseconds), 1.0, 8.0)));
+    else if (!m_moved && full <= still_milliseconds * finer * finer)
+      m_coarseness = finer;
+    m_coarseness = std::max(m_coarseness, m_settings.coarseness);
+  }
+
+  /// That pictures of its full resolution would take.
+  double milliseconds_of_window() const {
+    const Area area = m_screen.area();
+    return m_left->milliseconds_per_pixel() * area.width * area.height;
   }
 
   void tell() {
     m_contents.sides.clear();
-    m_contents.levels = 0;
+    m_contents.levels = m_light ? m_light->level() : 0;
     for (Side* side : {m_left.get(), m_right.get()}) {
       if (side == nullptr)
         continue;
       if (!m_busy || last_frame()) // not while things move: reading back takes time
         side->count_accesses();
-      m_contents.levels = std::max(m_contents.levels, side->levels());
+      if (!m_light)
+        m_contents.levels = std::max(m_contents.levels, side->levels());
       m_contents.sides.push_back(
           {side->subject().name(), side->accesses(), side->milliseconds(), side->texture_bytes()});
     }
@@ -234,18 +284,27 @@ private:
       show_names(m_contents.sides, m_screen.area().width);
   }
 
-  /// Opens what was chosen in the panel.
-  void choose() {
+  /// Opens what was chosen in the panel, or puts the panel back.
+  void take_choices() {
     try {
-      exchange(m_left, m_materials[static_cast<std::size_t>(m_settings.material)]);
-      exchange(m_right, m_others[static_cast<std::size_t>(m_settings.against)]);
-      m_shown_material = m_settings.material;
-      m_shown_against = m_settings.against;
+      choose(m_settings);
+      m_shown = m_settings;
     } catch (const Error& error) {
       tell_news(error.what(), true);
-      m_settings.material = m_shown_material;
-      m_settings.against = m_shown_against;
+      m_settings.material = m_shown.material;
+      m_settings.against = m_shown.against;
+      m_settings.light = m_shown.light;
     }
+  }
+
+  void choose(const Settings& settings) {
+    exchange(m_left, chosen(m_materials, settings.material));
+    exchange(m_right, chosen(m_others, settings.against));
+    if (settings.light != m_shown.light)
+      m_light = settings.light == 0
+                    ? nullptr
+                    : std::make_unique<WindowLight>(chosen(m_lights, settings.light),
+                                                    m_input.light_level, m_input.watch);
   }
 
   void exchange(std::unique_ptr<Side>& side, const Subject& subject) {
@@ -262,13 +321,16 @@ private:
   std::vector<Subject> m_others;    ///< the right one; the first is none
   std::unique_ptr<Side> m_left;
   std::unique_ptr<Side> m_right;
+  std::vector<renderer::LightDescription> m_lights; ///< the first is none: the lamp
+  std::unique_ptr<WindowLight> m_light;
   Orbit m_orbit;
   Settings m_settings;
   PanelContents m_contents;
-  int m_shown_material = 0;
-  int m_shown_against = 0;
+  Settings m_shown; ///< as far as all that was chosen could be opened
   Clock::time_point m_next_poll;
   bool m_moving = false;
+  bool m_moved = false; ///< a turn before
+  int m_coarseness = 1; ///< of the window's pixels, along a side of one of the pictures'
   bool m_busy = true;
   int m_frame = 0;
   std::vector<double> m_times;

@@ -2,7 +2,7 @@
 // The viewer's window.
 
 #include <image/image.h>
-#include <view/view_scene.h>
+#include <view/frame.h>
 
 #include <functional>
 #include <optional>
@@ -27,6 +27,10 @@ struct WindowInput {
   int height = 768;
   std::optional<int> level;
   Lamp lamp;
+  Lighting lighting = Lighting::Lamp; ///< Environment only if there is a probe or the scene has one
+  std::string probe;                  ///< image or light's trees in place of the scene's; or empty
+  int light_level = 10;               ///< a light is kept as 2^light_level squares a side
+  float tolerance = environment_tolerance;
   double exposure = 0; ///< stops
   bool watch = false;  ///< files are read again when they are rewritten
   bool bare = false;   ///< begins without controls

@@ -36,17 +36,42 @@ std::vector<std::string> neighbours(const std::string& path, const std::string& 
   return found;
 }
 
+std::vector<std::string> sets(const std::string& neighbour,
+                              const std::function<bool(const SetInfo&)>& wanted) {
+  std::vector<std::string> found = neighbours(neighbour, ".haar");
+  std::erase_if(found, [&](const std::string& path) { return !is_set(path, wanted); });
+  return found;
+}
+
+/// What is not among the choices yet.
+void add(const std::vector<std::string>& found, std::vector<std::string>& choices) {
+  for (const std::string& path : found)
+    if (std::find(choices.begin(), choices.end(), path) == choices.end())
+      choices.push_back(path);
+}
+
 } // namespace
 
 std::vector<std::string> material_choices(const std::vector<std::string>& named,
                                           const std::string& neighbour) {
-  const auto shown = [](const SetInfo& info) {
-    return info.kind == wavelet::SetKind::Brdf && info.cosine && info.rolls == 1;
-  };
   std::vector<std::string> choices = named;
-  for (const std::string& path : neighbours(neighbour, ".haar"))
-    if (std::find(choices.begin(), choices.end(), path) == choices.end() && is_set(path, shown))
-      choices.push_back(path);
+  add(sets(neighbour,
+           [](const SetInfo& info) {
+             return info.kind == wavelet::SetKind::Brdf && info.cosine && info.rolls == 1;
+           }),
+      choices);
+  return choices;
+}
+
+std::vector<std::string> light_choices(const std::vector<std::string>& named,
+                                       const std::string& neighbour) {
+  std::vector<std::string> choices = named;
+  add(sets(neighbour,
+           [](const SetInfo& info) {
+             return info.kind == wavelet::SetKind::Light && info.world_frame;
+           }),
+      choices);
+  add(neighbours(neighbour, ".hdr"), choices);
   return choices;
 }
 

@@ -12,4 +12,10 @@ namespace haarlight::view {
 std::vector<std::string> material_choices(const std::vector<std::string>& named,
                                           const std::string& neighbour);
 
+/// @param named what was asked for comes first, as it is
+/// @param neighbour a file; all lights' trees and .hdr images of its folder follow by name, itself
+///                  among them
+std::vector<std::string> light_choices(const std::vector<std::string>& named,
+                                       const std::string& neighbour);
+
 } // namespace haarlight::view

@@ -2,8 +2,6 @@
 
 #include <support/words.h>
 
-#include <image/png.h>
-
 #include <wavelet/output_file.h>
 
 namespace haarlight::view {
@@ -33,6 +31,9 @@ void check_window(const tool::Tool& app, const WindowOptions& options, bool wind
                            "--frames", "--turn", "--reloads"})
     if (!window && app.given(name))
       throw tool::UsageError(std::string(name).append(": is of the window, not of --frame"));
+  for (const char* name : {"--repeat", "--compare", "--reference"})
+    if (window && app.given(name))
+      throw tool::UsageError(std::string(name).append(": is of --frame"));
   for (const char* name : {"--screenshot", "--turn", "--reloads"})
     if (app.given(name) && !options.input.script.frames)
       throw tool::UsageError(std::string(name).append(": needs --frames as well"));
@@ -43,25 +44,6 @@ void check_window(const tool::Tool& app, const WindowOptions& options, bool wind
   if (!tool::has_extension(options.screenshot, ".png"))
     throw tool::UsageError("--screenshot: \"" + options.screenshot + "\" does not end in .png");
   const OutputFile trial(options.screenshot);
-}
-
-int run_window(const tool::Tool& app, const WindowOptions& options) {
-  WindowInput input = options.input;
-  input.script.screenshot = !options.screenshot.empty();
-  const WindowReport shown = show_window(input, [&](const std::string& news) { app.note(news); });
-  if (!options.screenshot.empty() && shown.picture.width > 0)
-    image::write_png(options.screenshot, shown.picture);
-  tool::Report report;
-  report.add("renderer", shown.renderer)
-      .add("width", shown.width, "px")
-      .add("height", shown.height, "px")
-      .add("frames", shown.frames)
-      .add("accesses_per_pixel", shown.accesses)
-      .add("ms_per_frame", shown.milliseconds, "ms");
-  if (input.watch)
-    report.add("reloads", shown.reloads).add("refused_reloads", shown.refusals);
-  app.print(report);
-  return tool::exit_ok;
 }
 
 } // namespace haarlight::view

@@ -20,7 +20,4 @@ void declare_window(tool::Tool& app, WindowOptions& options);
 /// @throws UsageError, Error(Output)
 void check_window(const tool::Tool& app, const WindowOptions& options, bool window);
 
-/// Shows the window, writes the screenshot and reports. @throws as show_window()
-int run_window(const tool::Tool& app, const WindowOptions& options);
-
 } // namespace haarlight::view

@@ -30,9 +30,13 @@ void choose_coarseness(int& coarseness) {
   }
 }
 
-void set_light(Settings& settings) {
+void set_light(const PanelContents& contents, Settings& settings) {
+  choose("light", contents.lights, settings.light);
   ImGui::SliderFloat("light turn", &settings.light_turn, -180, 180, "%.0f deg");
   ImGui::SliderFloat("light tilt", &settings.light_tilt, -90, 90, "%.0f deg");
+  if (settings.light > 0)
+    ImGui::SliderFloat("doubt", &settings.tolerance, 1e-4F, 0.1F, "%.4f",
+                       ImGuiSliderFlags_Logarithmic);
 }
 
 void tell_figures(const std::vector<SideFigures>& sides) {
@@ -48,7 +52,7 @@ void tell_figures(const std::vector<SideFigures>& sides) {
     ImGui::TableNextColumn();
     ImGui::Text("%.1f", side.accesses);
     ImGui::TableNextColumn();
-    ImGui::Text("%.1f", side.milliseconds);
+    ImGui::Text(side.milliseconds < 1000 ? "%.1f" : "%.0f", side.milliseconds);
     ImGui::TableNextColumn();
     ImGui::Text("%.1f", static_cast<double>(side.texture_bytes) / (1 << 20));
   }
@@ -77,7 +81,7 @@ void show_panel(const PanelContents& contents, Settings& settings) {
   ImGui::SliderFloat("exposure", &settings.exposure, -10, 10, "%+.1f stops");
   ImGui::SliderInt("level", &settings.level, -1, contents.levels,
                    settings.level < 0 ? "as needed" : "%d");
-  set_light(settings);
+  set_light(contents, settings);
   choose_coarseness(settings.coarseness);
   ImGui::PopItemWidth();
   tell_figures(contents.sides);

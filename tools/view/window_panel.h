@@ -11,11 +11,13 @@ namespace haarlight::view {
 struct Settings {
   int material = 0;     ///< of the choices; 0 is what was given
   int against = 0;      ///< the same for the other side, 0 being none
+  int light = 0;        ///< 0 is the lamp
   float exposure = 0;   ///< stops
   int level = -1;       ///< automatic_level or 0 … the deepest tree's
   float light_turn = 0; ///< degrees about world +y, right-handed, from where it was given
   float light_tilt = 0; ///< degrees about world +x, before it is turned
-  int coarseness = 1;   ///< of the window's pixels, along a side of one of the picture's
+  int coarseness = 1;   ///< at least, of the window's pixels along a side of one of a picture's
+  float tolerance = 0;  ///< share of a pixel that may be in doubt; without effect on the lamp
   bool panel = true;
 };
 
@@ -30,6 +32,7 @@ struct SideFigures {
 struct PanelContents {
   std::vector<std::string> materials;
   std::vector<std::string> others;
+  std::vector<std::string> lights;
   int levels = 0;
   std::vector<SideFigures> sides;
   std::string news; ///< of the files that are watched, or empty

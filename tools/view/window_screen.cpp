@@ -93,6 +93,7 @@ Gestures gestures() {
     dragged(ImGuiMouseButton_Left, found.orbit_x, found.orbit_y);
     dragged(ImGuiMouseButton_Right, found.light_x, found.light_y);
     found.wheel = static_cast<double>(io.MouseWheel);
+    found.moving = found.moving || found.wheel != 0;
   }
   return found;
 }

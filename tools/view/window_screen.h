@@ -18,7 +18,7 @@ struct Gestures {
   double wheel = 0;    ///< notches away from the user
   bool reset = false;  ///< R
   bool panel = false;  ///< Tab
-  bool moving = false; ///< a button of the mouse is down
+  bool moving = false; ///< a button of the mouse is down, or its wheel turns
 };
 
 /// Its context is current to the thread that made it while it lives. One per process at a time.

@@ -1,9 +1,5 @@
 #include <view/window_side.h>
 
-#include <wavelet/error.h>
-
-#include <list>
-
 namespace haarlight::view {
 
 using renderer::CameraDescription;
@@ -23,7 +19,9 @@ bool same(const Lamp& a, const Lamp& b) {
 bool same_size(const Look& a, const Look& b) { return a.width == b.width && a.height == b.height; }
 
 bool same(const Look& a, const Look& b) {
-  return same(a.camera, b.camera) && same(a.lamp, b.lamp) && a.level == b.level && same_size(a, b);
+  return same(a.camera, b.camera) && same(a.lamp, b.lamp) && a.light == b.light &&
+         a.to_world == b.to_world && a.tolerance == b.tolerance && a.level == b.level &&
+         same_size(a, b);
 }
 
 SceneDescription describe(const Subject& subject) {
@@ -45,36 +43,13 @@ std::vector<std::string> files_of(const Subject& subject, const SceneDescription
   return files;
 }
 
-/// Copies of the files that a scene's materials name.
-class Copies {
-public:
-  /// Has the scene name the copies.
-  void take_place_in(SceneDescription& scene) {
+ViewScene open(SceneDescription scene, bool copied) {
+  FileCopies copies;
+  try {
     for (renderer::MaterialDescription& material : scene.materials)
       for (std::string* path : {&material.haar, &material.brdf})
-        if (!path->empty())
-          *path = m_copies.emplace_back(*path).path();
-  }
-
-  /// The same error of the file that was copied.
-  Error told_of_originals(const Error& error) const {
-    const std::string text = error.what();
-    for (const FileCopy& copy : m_copies)
-      if (error.path() == copy.path())
-        return {error.kind(), copy.original(), text.substr(copy.path().size() + 2)};
-    return error;
-  }
-
-private:
-  std::list<FileCopy> m_copies;
-};
-
-ViewScene open(SceneDescription scene, bool copied) {
-  Copies copies;
-  if (!copied)
-    return ViewScene(std::move(scene));
-  copies.take_place_in(scene);
-  try {
+        if (copied)
+          copies.take(*path);
     return ViewScene(std::move(scene));
   } catch (const Error& error) {
     throw copies.told_of_originals(error);
@@ -107,7 +82,12 @@ bool Side::draw(const Look& look, bool always) {
     m_drawer->resize(look.width, look.height);
   m_drawer->set_camera(look.camera);
   m_drawer->set_lamp(look.lamp);
-  m_milliseconds = m_drawer->draw(look.level);
+  if (look.light != nullptr && (!m_drawn || m_drawn->light != look.light))
+    m_drawer->set_light(*look.light);
+  m_drawer->turn_light(look.to_world);
+  m_drawer->set_tolerance(look.tolerance);
+  const bool environment = look.light != nullptr;
+  m_milliseconds = m_drawer->draw(environment ? Lighting::Environment : Lighting::Lamp, look.level);
   m_drawn = look;
   m_counted = false;
   return true;

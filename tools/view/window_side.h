@@ -26,6 +26,9 @@ struct Subject {
 struct Look {
   renderer::CameraDescription camera;
   Lamp lamp;
+  std::shared_ptr<const PackedLight> light;               ///< in place of the lamp, if not null
+  Eigen::Matrix3f to_world = Eigen::Matrix3f::Identity(); ///< from the light's frame
+  float tolerance = environment_tolerance;
   int level = automatic_level;
   int width = 1; ///< pixels
   int height = 1;

@@ -1,9 +1,10 @@
 #pragma once
 // Files that may be rewritten while they are shown.
 
-#include <wavelet/output_file.h>
+#include <wavelet/error.h>
 
 #include <cstdint>
+#include <list>
 #include <string>
 #include <vector>
 
@@ -35,13 +36,31 @@ public:
   /// @throws Error(Input) if the file cannot be read, Error(Output) if the folder for temporary
   ///         files takes no copy
   explicit FileCopy(const std::string& path);
+  ~FileCopy();
+  FileCopy(const FileCopy&) = delete;
+  FileCopy& operator=(const FileCopy&) = delete;
 
-  const std::string& path() const { return m_file.temporary(); }
+  /// Of the same name, in a folder of its own.
+  const std::string& path() const { return m_path; }
   const std::string& original() const { return m_original; }
 
 private:
   std::string m_original;
-  OutputFile m_file;
+  std::string m_folder;
+  std::string m_path;
+};
+
+/// Copies of the files that something is made of.
+class FileCopies {
+public:
+  /// Makes a path name a copy, unless it is empty. @throws as FileCopy
+  void take(std::string& path);
+
+  /// The same error of the file that was copied.
+  Error told_of_originals(const Error& error) const;
+
+private:
+  std::list<FileCopy> m_copies;
 };
 
 } // namespace haarlight::view
