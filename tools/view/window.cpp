@@ -28,11 +28,6 @@ constexpr double poll_seconds = 0.2;        ///< between looks at watched files
 using renderer::CameraDescription;
 using Clock = std::chrono::steady_clock;
 
-/// @param file trees, or a scene
-Subject subject_of(const std::string& scene, const std::string& file) {
-  return wavelet::begins_as_tree_set(InputFile(file)) ? Subject{scene, file} : Subject{file, {}};
-}
-
 /// About the world's axes, as LightDescription::rotate turns a probe.
 Eigen::Matrix3f turn_of(const Settings& settings) {
   constexpr float degree = std::numbers::pi_v<float> / 180;
@@ -59,15 +54,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
-  std::vector<std::string> names(subjects.size());
-  std::transform(subjects.begin(), subjects.end(), names.begin(),
-                 [](const Subject& subject) { return subject.name(); });
-  return names;
-}
-
 template <class Choice>
-Choice& chosen(std::vector<Choice>& choices, int setting) {
+const Choice& chosen(const std::vector<Choice>& choices, int setting) {
   return choices[static_cast<std::size_t>(setting)];
 }
 
@@ -76,15 +64,19 @@ public:
   Viewer(const WindowInput& input, const std::function<void(const std::string&)>& note)
       : m_input(input), m_note(note), m_screen(input.width, input.height, title(input)),
         m_left(std::make_unique<Side>(Subject{input.scene, {}}, input.watch)),
+        m_choices(choices_of(input, m_left->description().light)),
         m_orbit(m_left->description().camera) {
+    m_settings.against = input.against.empty() ? 0 : 1;
+    m_settings.light = input.lighting == Lighting::Environment ? 1 : 0;
     m_settings.exposure = static_cast<float>(input.exposure);
     m_settings.level = input.level.value_or(automatic_level);
     m_settings.tolerance = input.tolerance;
     m_settings.panel = !input.bare;
     m_screen.pace(!scripted());
     m_coarseness = scripted() ? 1 : 8;
-    offer_materials();
-    offer_lights();
+    m_contents.materials = names_of(m_choices.materials);
+    m_contents.others = names_of(m_choices.others);
+    m_contents.lights = names_of(m_choices.lights);
     choose(m_settings);
     m_shown = m_settings;
   }
@@ -104,39 +96,6 @@ public:
 private:
   static std::string title(const WindowInput& input) {
     return std::string("haarview: ").append(base_name(input.scene));
-  }
-
-  void offer_materials() {
-    m_materials = {m_left->subject()};
-    m_others = {Subject{}};
-    if (!m_input.against.empty()) {
-      m_others.push_back(subject_of(m_input.scene, m_input.against));
-      m_settings.against = 1;
-    }
-    for (const std::string& file : material_choices(m_input.materials, m_input.scene)) {
-      m_materials.push_back({m_input.scene, file});
-      m_others.push_back({m_input.scene, file});
-    }
-    m_contents.materials = names_of(m_materials);
-    m_contents.others = names_of(m_others);
-    m_contents.others.front() = "nothing";
-  }
-
-  void offer_lights() {
-    m_lights = {{}};
-    m_contents.lights = {"lamp"};
-    if (!m_input.probe.empty())
-      m_lights.push_back(light_of_file(m_input.probe));
-    const renderer::LightDescription& given = m_left->description().light;
-    if (!file_of(given).empty())
-      m_lights.push_back(given);
-    m_settings.light = m_input.lighting == Lighting::Environment ? 1 : 0;
-    const std::string& neighbour = file_of(m_lights.back());
-    for (const std::string& file : light_choices({}, neighbour.empty() ? m_input.scene : neighbour))
-      if (file != file_of(chosen(m_lights, m_settings.light)) && file != neighbour)
-        m_lights.push_back(light_of_file(file));
-    for (std::size_t i = 1; i < m_lights.size(); ++i)
-      m_contents.lights.push_back(base_name(file_of(m_lights[i])));
   }
 
   bool scripted() const { return m_input.script.frames.has_value(); }
@@ -238,6 +197,7 @@ private:
     if (m_light) {
       look.light = m_light->squares();
       look.to_world *= m_light->to_world();
+      look.background = m_light->background();
     }
     look.tolerance = std::max(m_settings.tolerance, m_moving ? moving_tolerance : 0);
     look.level = m_settings.level;
@@ -298,12 +258,12 @@ private:
   }
 
   void choose(const Settings& settings) {
-    exchange(m_left, chosen(m_materials, settings.material));
-    exchange(m_right, chosen(m_others, settings.against));
+    exchange(m_left, chosen(m_choices.materials, settings.material));
+    exchange(m_right, chosen(m_choices.others, settings.against));
     if (settings.light != m_shown.light)
       m_light = settings.light == 0
                     ? nullptr
-                    : std::make_unique<WindowLight>(chosen(m_lights, settings.light),
+                    : std::make_unique<WindowLight>(chosen(m_choices.lights, settings.light),
                                                     m_input.light_level, m_input.watch);
   }
 
@@ -317,12 +277,10 @@ private:
   const WindowInput& m_input;
   const std::function<void(const std::string&)>& m_note;
   Screen m_screen;
-  std::vector<Subject> m_materials; ///< that the left picture can be of
-  std::vector<Subject> m_others;    ///< the right one; the first is none
   std::unique_ptr<Side> m_left;
   std::unique_ptr<Side> m_right;
-  std::vector<renderer::LightDescription> m_lights; ///< the first is none: the lamp
   std::unique_ptr<WindowLight> m_light;
+  WindowChoices m_choices;
   Orbit m_orbit;
   Settings m_settings;
   PanelContents m_contents;

@@ -1,5 +1,7 @@
 #include <view/window_choices.h>
 
+#include <view/window_light.h>
+
 #include <wavelet/error.h>
 #include <wavelet/input_file.h>
 #include <wavelet/tree_set.h>
@@ -43,36 +45,70 @@ std::vector<std::string> sets(const std::string& neighbour,
   return found;
 }
 
-/// What is not among the choices yet.
-void add(const std::vector<std::string>& found, std::vector<std::string>& choices) {
-  for (const std::string& path : found)
-    if (std::find(choices.begin(), choices.end(), path) == choices.end())
-      choices.push_back(path);
+bool is_material(const SetInfo& info) {
+  return info.kind == wavelet::SetKind::Brdf && info.cosine && info.rolls == 1;
+}
+
+bool is_light(const SetInfo& info) {
+  return info.kind == wavelet::SetKind::Light && info.world_frame;
+}
+
+/// @param file trees, or a scene
+Subject subject_of(const std::string& scene, const std::string& file) {
+  return wavelet::begins_as_tree_set(InputFile(file)) ? Subject{scene, file} : Subject{file, {}};
+}
+
+void add_materials(const WindowInput& input, WindowChoices& choices) {
+  std::vector<std::string> files = input.materials;
+  for (const std::string& path : sets(input.scene, is_material))
+    if (std::find(files.begin(), files.end(), path) == files.end())
+      files.push_back(path);
+  for (const std::string& path : files) {
+    choices.materials.push_back({input.scene, path});
+    choices.others.push_back({input.scene, path});
+  }
+}
+
+void add_lights(const std::string& neighbour, WindowChoices& choices) {
+  std::vector<std::string> files = sets(neighbour, is_light);
+  const std::vector<std::string> images = neighbours(neighbour, ".hdr");
+  files.insert(files.end(), images.begin(), images.end());
+  for (const std::string& path : files)
+    if (std::none_of(choices.lights.begin(), choices.lights.end(),
+                     [&](const auto& light) { return file_of(light) == path; }))
+      choices.lights.push_back(light_of_file(path));
 }
 
 } // namespace
 
-std::vector<std::string> material_choices(const std::vector<std::string>& named,
-                                          const std::string& neighbour) {
-  std::vector<std::string> choices = named;
-  add(sets(neighbour,
-           [](const SetInfo& info) {
-             return info.kind == wavelet::SetKind::Brdf && info.cosine && info.rolls == 1;
-           }),
-      choices);
+WindowChoices choices_of(const WindowInput& input, const renderer::LightDescription& light) {
+  WindowChoices choices = {{{input.scene, {}}}, {{}}, {{}}};
+  if (!input.against.empty())
+    choices.others.push_back(subject_of(input.scene, input.against));
+  add_materials(input, choices);
+  if (!input.probe.empty())
+    choices.lights.push_back(light_of_file(input.probe));
+  if (!file_of(light).empty())
+    choices.lights.push_back(light);
+  const std::string given = file_of(choices.lights.back());
+  add_lights(given.empty() ? input.scene : given, choices);
   return choices;
 }
 
-std::vector<std::string> light_choices(const std::vector<std::string>& named,
-                                       const std::string& neighbour) {
-  std::vector<std::string> choices = named;
-  add(sets(neighbour,
-           [](const SetInfo& info) {
-             return info.kind == wavelet::SetKind::Light && info.world_frame;
-           }),
-      choices);
-  add(neighbours(neighbour, ".hdr"), choices);
-  return choices;
+std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
+  std::vector<std::string> names(subjects.size());
+  std::transform(subjects.begin(), subjects.end(), names.begin(),
+                 [](const Subject& subject) { return subject.name(); });
+  names.front() = names.front().empty() ? "nothing" : names.front();
+  return names;
+}
+
+std::vector<std::string> names_of(const std::vector<renderer::LightDescription>& lights) {
+  std::vector<std::string> names(lights.size());
+  std::transform(lights.begin(), lights.end(), names.begin(),
+                 [](const auto& light) { return base_name(file_of(light)); });
+  names.front() = "lamp";
+  return names;
 }
 
 } // namespace haarlight::view

@@ -31,6 +31,8 @@ public:
   const std::shared_ptr<const PackedLight>& squares() const { return m_squares; }
   /// From its frame to the world's.
   const Eigen::Matrix3f& to_world() const { return m_to_world; }
+  /// Whether it is to be seen where there is no object.
+  bool background() const { return m_description.background; }
   int level() const { return m_squares->levels; }
 
   /// Whether its file has been rewritten, by FileWatch::changed().

@@ -20,8 +20,8 @@ bool same_size(const Look& a, const Look& b) { return a.width == b.width && a.he
 
 bool same(const Look& a, const Look& b) {
   return same(a.camera, b.camera) && same(a.lamp, b.lamp) && a.light == b.light &&
-         a.to_world == b.to_world && a.tolerance == b.tolerance && a.level == b.level &&
-         same_size(a, b);
+         a.to_world == b.to_world && a.background == b.background && a.tolerance == b.tolerance &&
+         a.level == b.level && same_size(a, b);
 }
 
 SceneDescription describe(const Subject& subject) {
@@ -85,6 +85,7 @@ bool Side::draw(const Look& look, bool always) {
   if (look.light != nullptr && (!m_drawn || m_drawn->light != look.light))
     m_drawer->set_light(*look.light);
   m_drawer->turn_light(look.to_world);
+  m_drawer->show_background(look.background);
   m_drawer->set_tolerance(look.tolerance);
   const bool environment = look.light != nullptr;
   m_milliseconds = m_drawer->draw(environment ? Lighting::Environment : Lighting::Lamp, look.level);

@@ -28,6 +28,7 @@ struct Look {
   Lamp lamp;
   std::shared_ptr<const PackedLight> light;               ///< in place of the lamp, if not null
   Eigen::Matrix3f to_world = Eigen::Matrix3f::Identity(); ///< from the light's frame
+  bool background = true; ///< that light is seen where there is no object
   float tolerance = environment_tolerance;
   int level = automatic_level;
   int width = 1; ///< pixels
