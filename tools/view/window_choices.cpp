@@ -53,19 +53,25 @@ bool is_light(const SetInfo& info) {
   return info.kind == wavelet::SetKind::Light && info.world_frame;
 }
 
-/// @param file trees, or a scene
-Subject subject_of(const std::string& scene, const std::string& file) {
-  return wavelet::begins_as_tree_set(InputFile(file)) ? Subject{scene, file} : Subject{file, {}};
+bool holds_trees(const std::string& path) { return wavelet::begins_as_tree_set(InputFile(path)); }
+
+/// A set of trees is its own scene, so trees take its place as a whole.
+Subject with_material(const std::string& scene, const std::string& trees) {
+  return holds_trees(scene) ? Subject{trees, {}} : Subject{scene, trees};
+}
+
+void add(const Subject& subject, std::vector<Subject>& subjects) {
+  if (std::find(subjects.begin(), subjects.end(), subject) == subjects.end())
+    subjects.push_back(subject);
 }
 
 void add_materials(const WindowInput& input, WindowChoices& choices) {
   std::vector<std::string> files = input.materials;
-  for (const std::string& path : sets(input.scene, is_material))
-    if (std::find(files.begin(), files.end(), path) == files.end())
-      files.push_back(path);
+  const std::vector<std::string> found = sets(input.scene, is_material);
+  files.insert(files.end(), found.begin(), found.end());
   for (const std::string& path : files) {
-    choices.materials.push_back({input.scene, path});
-    choices.others.push_back({input.scene, path});
+    add(with_material(input.scene, path), choices.materials);
+    add(with_material(input.scene, path), choices.others);
   }
 }
 
@@ -84,7 +90,8 @@ void add_lights(const std::string& neighbour, WindowChoices& choices) {
 WindowChoices choices_of(const WindowInput& input, const renderer::LightDescription& light) {
   WindowChoices choices = {{{input.scene, {}}}, {{}}, {{}}};
   if (!input.against.empty())
-    choices.others.push_back(subject_of(input.scene, input.against));
+    choices.others.push_back(holds_trees(input.against) ? with_material(input.scene, input.against)
+                                                        : Subject{input.against, {}});
   add_materials(input, choices);
   if (!input.probe.empty())
     choices.lights.push_back(light_of_file(input.probe));
