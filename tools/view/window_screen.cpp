@@ -1,6 +1,6 @@
 #include <view/window_screen.h>
 
-#include <image/png.h>
+#include <view/window_picture.h>
 
 #include <wavelet/error.h>
 
@@ -41,20 +41,17 @@ struct Library {
 
 enum class Key { Escape, Tab, R };
 
-struct WindowDeleter {
-  void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
-};
+using Window = std::unique_ptr<GLFWwindow, decltype(&glfwDestroyWindow)>;
 
-std::unique_ptr<GLFWwindow, WindowDeleter> make_window(int width, int height,
-                                                       const std::string& title) {
+Window make_window(int width, int height, const std::string& title) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
-  std::unique_ptr<GLFWwindow, WindowDeleter> window(
-      glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr));
+  Window window(glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr),
+                glfwDestroyWindow);
   if (window == nullptr)
     refuse("cannot be opened with OpenGL 3.3");
   glfwMakeContextCurrent(window.get());
@@ -79,54 +76,18 @@ struct Controls {
   Controls& operator=(const Controls&) = delete;
 };
 
-Gestures gestures() {
-  const ImGuiIO& io = ImGui::GetIO();
-  Gestures found;
-  found.moving = ImGui::IsAnyMouseDown();
-  if (!io.WantCaptureMouse) {
-    const auto dragged = [&](ImGuiMouseButton button, double& x, double& y) {
-      if (!ImGui::IsMouseDown(button))
-        return;
-      x = static_cast<double>(io.MouseDelta.x);
-      y = static_cast<double>(io.MouseDelta.y);
-    };
-    dragged(ImGuiMouseButton_Left, found.orbit_x, found.orbit_y);
-    dragged(ImGuiMouseButton_Right, found.light_x, found.light_y);
-    found.wheel = static_cast<double>(io.MouseWheel);
-    found.moving = found.moving || found.wheel != 0;
-  }
-  return found;
-}
-
-/// Of the back buffer, before it is swapped.
-image::Picture read_back(const Area& area) {
-  const auto width = static_cast<std::size_t>(area.width);
-  const std::size_t row = 3 * width;
-  std::vector<unsigned char> codes(row * static_cast<std::size_t>(area.height));
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glReadBuffer(GL_BACK);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, area.width, area.height, GL_RGB, GL_UNSIGNED_BYTE, codes.data());
-  image::Picture picture(area.width, area.height);
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    const std::size_t y = static_cast<std::size_t>(area.height) - 1 - i / row;
-    picture.rgb[y * row + i % row] = image::srgb_value(codes[i]);
-  }
-  return picture;
-}
-
 } // namespace
 
 struct Screen::Parts {
   Library library;
-  std::unique_ptr<GLFWwindow, WindowDeleter> window;
+  Window window;
   Controls controls;
   std::array<bool, 3> down = {};
 
   Parts(int width, int height, const std::string& title)
       : window(make_window(width, height, title)), controls(window.get()) {
-    glfwSetInputMode(window.get(), GLFW_STICKY_KEYS,
-                     GLFW_TRUE); // keys struck while a picture is drawn
+    // keys struck while a picture is drawn are not lost
+    glfwSetInputMode(window.get(), GLFW_STICKY_KEYS, GLFW_TRUE);
   }
 
   /// Once for each time the key goes down.
@@ -139,9 +100,7 @@ struct Screen::Parts {
 };
 
 Screen::Screen(int width, int height, const std::string& title)
-    : m_parts(std::make_unique<Parts>(width, height, title)) {
-  pace(true);
-}
+    : m_parts(std::make_unique<Parts>(width, height, title)) {}
 
 Screen::~Screen() = default;
 
@@ -160,7 +119,7 @@ Gestures Screen::begin(double patience) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glClearColor(0.08F, 0.08F, 0.08F, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  Gestures found = gestures();
+  Gestures found = mouse_gestures();
   found.panel = m_parts->struck(Key::Tab);
   found.reset = m_parts->struck(Key::R);
   return found;
@@ -171,7 +130,7 @@ void Screen::end(image::Picture* picture) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   if (picture != nullptr)
-    *picture = read_back(area());
+    *picture = read_window(area());
   glfwSwapBuffers(m_parts->window.get());
 }
 

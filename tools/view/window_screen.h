@@ -3,23 +3,12 @@
 
 #include <image/image.h>
 #include <view/gl_objects.h>
+#include <view/window_gestures.h>
 
 #include <memory>
 #include <string>
 
 namespace haarlight::view {
-
-/// What mouse and keyboard asked for since the last turn, controls left aside.
-struct Gestures {
-  double orbit_x = 0; ///< dragged with the left button, pixels to the right
-  double orbit_y = 0; ///< and down
-  double light_x = 0; ///< with the right button
-  double light_y = 0;
-  double wheel = 0;    ///< notches away from the user
-  bool reset = false;  ///< R
-  bool panel = false;  ///< Tab
-  bool moving = false; ///< a button of the mouse is down, or its wheel turns
-};
 
 /// Its context is current to the thread that made it while it lives. One per process at a time.
 /// A turn is: begin(); controls are declared to Dear ImGui and pictures drawn to framebuffer 0, in
@@ -45,7 +34,7 @@ public:
   Area area() const;
   /// What draws, in the driver's words.
   std::string renderer() const;
-  /// Whether turns take the screen's rhythm, as they do if nothing is said, or none.
+  /// Whether turns take the screen's rhythm, or none.
   void pace(bool paced);
 
 private:
