@@ -2,7 +2,9 @@
 # What all programs have in common: no arguments, --help, --version, wrong options, a closed stdout.
 source "$(dirname "$0")/lib.sh" "$1"
 
-for tool in brdfsynth probesynth brdf2maps probe2maps maps2haar haarinfo haardiff haarrender haarrelight haarsheet haarbench; do
+tools="brdfsynth probesynth brdf2maps probe2maps maps2haar haarinfo haardiff haarrender haarrelight haarsheet haarbench"
+[ ! -x "$bin/haarview" ] || tools="$tools haarview"
+for tool in $tools; do
   expect 2 "$tool"
   says "--help"
   expect 2 "$tool" --no-such-option

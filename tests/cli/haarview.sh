@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# haarview: frames against the same trees on the CPU, level by level, and its misuse.
+source "$(dirname "$0")/lib.sh" "$1"
+
+[ -x "$bin/haarview" ] || { echo "skipped: haarview was not built"; exit 77; }
+
+"$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.05 --roughness 0.15 -q -o brdf.binary >/dev/null
+"$bin/brdf2maps" brdf.binary -q --size 128 --theta 32 --conservation-tolerance 1 -o brdf.haar >/dev/null
+"$bin/brdf2maps" brdf.binary -q --size 16 --theta 8 --conservation-tolerance 1 --coefficients float \
+  -o small.haar >/dev/null
+
+# scene FILE SHAPE: two sets side by side, a matt floor, and one more object.
+scene() {
+  cat >"$1" <<END
+{ "film": {"width": 96, "height": 64},
+  "camera": {"type": "perspective", "from": [0, 1.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 35},
+  "light": {"probe": "unused.hdr"},
+  "materials": {"fine": {"haar": "brdf.haar"}, "coarse": {"haar": "small.haar"}, "floor": {"lambert": [0.5, 0.5, 0.5]}},
+  "objects": [{"type": "sphere", "center": [-0.8, 0, 0], "radius": 1, "material": "fine"},
+              {"type": "sphere", "center": [0.6, 0, 0], "radius": 0.5, "material": "coarse", "transform": {"scale": 2}},
+              {"type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], "material": "floor"}, $2] }
+END
+}
+scene scene.json '{"type": "sphere", "center": [0, -0.7, 1.5], "radius": 0.3, "material": "fine"}'
+
+if ! "$bin/haarview" brdf.haar --frame probe.exr -q --size 8x8 >"$log/out" 2>"$log/err"; then
+  grep -q "^haarview: EGL: " "$log/err" || { cat "$log/err"; exit 1; }
+  echo "skipped: $(cat "$log/err")"
+  exit 77
+fi
+rm probe.exr
+
+# number EXPRESSION: it must hold; errors prints the relative errors: the frame's, then each level's.
+number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
+errors() { sed -n 's/.*"relative_rms": *\([0-9.e+-]*\).*/\1/p' "$log/out"; }
+
+# agrees FRAMES…: at full level within 1 % of the CPU, at level 0 far from it, at finer ones nearer
+agrees() {
+  expect 0 haarview "$@" --level 13 --compare --repeat 1 --json --frame frame.exr
+  command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
+  mapfile -t error < <(errors)
+  number "${error[0]} <= 0.01 && ${error[-1]} <= 0.01"
+  number "${error[1]} > 0.2 && ${error[5]} < ${error[1]} && ${error[7]} < ${error[5]}"
+}
+agrees brdf.haar --size 64x64 --light-direction 1,2,3
+agrees brdf.haar --size 64x64 --light-position=-1,1,3
+agrees scene.json --light-direction=-1,2,2
+agrees scene.json --light-position 0.5,2,3 --irradiance 9,6,3
+
+# the level that pixels need is nearly the full one where pixels are small
+expect 0 haarview brdf.haar --size 256x256 --compare --repeat 1 --json --frame frame.exr
+mapfile -t error < <(errors)
+number "${error[0]} < 0.1 && ${error[0]} < ${error[5]}"
+
+# environment FRAMES…: at the finest level within 2 % of a picture by product integrals, at coarse ones
+# farther from it the coarser, with fewer accesses
+sed -i 's/"light": {.*}/"light": {"probe": "sky.hdr", "rotate": 70, "background": false}/' scene.json
+"$bin/probesynth" --scene sun-sky --size 128 -q -o sky.hdr >/dev/null
+"$bin/probe2maps" sky.hdr --size 256 -q -o sky.haar >/dev/null
+accesses() { sed -n 's/.*"accesses": *\([0-9.e+-]*\).*/\1/p' "$log/out"; }
+expect 0 haarrender scene.json --size 48x32 --integrator product-integral -q -o integral.exr
+expect 0 haarview scene.json --size 48x32 --environment --reference integral.exr --repeat 1 --json --frame frame.exr
+mapfile -t error < <(errors)
+mapfile -t count < <(accesses)
+number "${error[0]} <= 0.02 && ${error[-1]} <= 0.02"
+number "${error[1]} > 0.2 && ${error[3]} < ${error[1]} && ${error[5]} < ${error[3]}"
+number "${count[0]} < ${count[2]} && ${count[2]} < ${count[4]} && ${count[4]} <= ${count[-1]}"
+
+# trees of a light do as well as the probe they were made of; --compare makes the same picture
+expect 0 haarview brdf.haar --size 32x32 --probe sky.haar --compare --repeat 1 --json --frame trees.exr
+mapfile -t error < <(errors)
+number "${error[0]} <= 0.02"
+expect 0 haarview brdf.haar --size 32x32 --probe sky.hdr --repeat 1 --frame trees.exr
+
+# what is far away takes fewer accesses
+near=$("$bin/haarview" brdf.haar --size 256x256 -q --frame frame.exr | sed -n 's/accesses per pixel *//p')
+distant=$("$bin/haarview" brdf.haar --size 16x16 -q --frame frame.exr | sed -n 's/accesses per pixel *//p')
+number "$distant < 0.8 * $near"
+
+# a .png shows as much; frames are the same each time
+expect 0 haarview brdf.haar --size 32x32 --frame frame.png
+"$bin/haarview" brdf.haar --size 64x64 -q --frame once.exr >/dev/null
+"$bin/haarview" brdf.haar --size 64x64 -q --frame twice.exr >/dev/null
+same once.exr twice.exr
+
+# what goes wrong
+expect 2 haarview brdf.haar --frame picture.jpg
+expect 2 haarview brdf.haar --frame picture.exr --level 14
+expect 2 haarview brdf.haar --frame picture.exr --light-direction 0,0,0
+expect 2 haarview brdf.haar --frame picture.exr --light-direction 0,0,1 --light-position 0,0,1
+expect 2 haarview brdf.haar --frame picture.exr --environment --light-direction 0,0,1
+expect 2 haarview brdf.haar --frame picture.exr --tolerance 0.1
+expect 2 haarview brdf.haar --frame picture.exr --environment
+expect 3 haarview brdf.haar --frame picture.exr --probe brdf.haar
+expect 3 haarview scene.json --frame picture.exr --reference integral.exr
+says "48x32"
+head -c 5000 brdf.haar >cut.haar
+expect 3 haarview cut.haar --frame picture.exr
+scene disk.json '{"type": "disk", "center": [0, 0, 0], "normal": [0, 1, 0], "radius": 1, "material": "fine"}'
+expect 3 haarview disk.json --frame picture.exr
+says "objects[3]"
+expect 4 haarview brdf.haar --size 70000x1 --frame picture.exr
+says "GL: a picture can have"
+scene many.json '{"type": "sphere", "center": [0, -0.7, 1.5], "radius": 0.3, "material": "fine"}'
+columns=$(for i in $(seq 550); do printf '"m%d": {"haar": "brdf.haar"}, ' "$i"; done)
+sed -i "s/\"floor\": {/$columns&/" many.json
+expect 4 haarview many.json --frame picture.exr
+says "GL: what is to be shown takes a texture of"
+refuses_bad_input picture.exr haarview @ --frame picture.exr
+refuses_bad_output .exr haarview brdf.haar --size 64x64 --frame @
+__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere expect 4 haarview brdf.haar --frame picture.exr
+says "EGL: "
+leaves brdf.binary brdf.haar small.haar scene.json cut.haar disk.json many.json frame.exr frame.png integral.exr sky.haar sky.hdr trees.exr once.exr twice.exr
+finish

@@ -1,0 +1,56 @@
+#include <view/comparison.h>
+
+#include <image/image_exr.h>
+#include <view/cpu_frame.h>
+#include <wavelet/error.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace haarlight::view {
+
+double Drawing::time(int level) const {
+  std::vector<double> times;
+  for (int i = 0; i < repeat; ++i)
+    times.push_back(drawer.draw(lighting, level));
+  std::nth_element(times.begin(), times.begin() + repeat / 2, times.end());
+  return times[static_cast<std::size_t>(repeat / 2)];
+}
+
+std::vector<float> reference_of(const ViewScene& scene, const renderer::SceneDescription& film,
+                                const Options& options) {
+  if (options.reference.empty() && !options.compare)
+    return {};
+  if (options.reference.empty())
+    return lighting_of(options) == Lighting::Lamp
+               ? cpu_frame(scene, lamp_of(options), film.width, film.height)
+               : cpu_environment_frame(film, film.width, film.height);
+  image::Picture reference = image::read_exr(options.reference);
+  if (reference.width != film.width || reference.height != film.height)
+    throw_input_error(options.reference, "is " + std::to_string(reference.width) + "x" +
+                                             std::to_string(reference.height) +
+                                             " pixels large, unlike the frame");
+  return std::move(reference.rgb);
+}
+
+void add_comparison(const Drawing& drawing, int level, int finest,
+                    const std::vector<float>& reference, tool::Report& report) {
+  drawing.drawer.show_background(false);
+  drawing.drawer.draw(drawing.lighting, level);
+  report.add("relative_rms", relative_rms(drawing.drawer.read().rgb, reference));
+  for (int coarse = 0; coarse <= finest; ++coarse) {
+    const double ms = drawing.time(coarse);
+    const DrawnFrame frame = drawing.drawer.read();
+    report.row("levels")
+        .add("level", coarse)
+        .add("relative_rms", relative_rms(frame.rgb, reference))
+        .add("accesses", frame.accesses)
+        .add("ms_per_frame", ms);
+  }
+}
+
+int finest_level(const ViewScene& scene, const Options& options) {
+  return lighting_of(options) == Lighting::Lamp ? scene.levels() : options.light_level;
+}
+
+} // namespace haarlight::view

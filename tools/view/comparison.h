@@ -1,0 +1,35 @@
+#pragma once
+// Frames timed, and held against pictures of which more is known.
+
+#include <support/report.h>
+#include <view/view_options.h>
+
+#include <vector>
+
+namespace haarlight::view {
+
+/// Draws frames of one kind.
+struct Drawing {
+  const FrameDrawer& drawer;
+  Lighting lighting;
+  int repeat; ///< frames whose times count
+
+  /// Median time of a frame, ms.
+  double time(int level) const;
+};
+
+/// What frames are compared with, as the options have it; nothing if they are not.
+/// @param film the scene with the size and the light that are drawn
+/// @throws Error(Input) if it cannot be read, or is of another size
+std::vector<float> reference_of(const ViewScene& scene, const renderer::SceneDescription& film,
+                                const Options& options);
+
+/// Adds the relative error of the frame of `level`, then error and cost of each level up to the
+/// finest of the scene. No background is drawn from then on.
+void add_comparison(const Drawing& drawing, int level, int finest,
+                    const std::vector<float>& reference, tool::Report& report);
+
+/// Beyond it frames do not change.
+int finest_level(const ViewScene& scene, const Options& options);
+
+} // namespace haarlight::view

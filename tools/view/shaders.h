@@ -1,0 +1,21 @@
+#pragma once
+// The .glsl files of this folder, in what GLSL ES 3.00 and GLSL 3.30 have in common, without the
+// line that says which of them it is.
+
+#include <string>
+
+namespace haarlight::view {
+
+/// One triangle over the whole image.
+std::string covering_vertex_shader();
+
+/// lamp.glsl and what it rests on.
+std::string lamp_fragment_shader();
+
+/// environment.glsl and what it rests on.
+std::string environment_fragment_shader();
+
+/// show.glsl and what it rests on.
+std::string show_fragment_shader();
+
+} // namespace haarlight::view

@@ -1,0 +1,46 @@
+#pragma once
+// The command line of haarview.
+
+#include <support/tool.h>
+#include <view/frame.h>
+#include <view/window_options.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace haarlight::view {
+
+struct Options {
+  std::string input;
+  std::string frame;
+  std::string size;
+  std::optional<int> level;
+  std::vector<double> direction = {0.4, 0.6, 0.7};
+  std::vector<double> position;
+  std::vector<double> irradiance = {3, 3, 3};
+  bool environment = false;
+  std::string probe;
+  int light_level = 10;
+  float tolerance = environment_tolerance;
+  double exposure = 0;
+  int repeat = 3;
+  bool compare = false;
+  std::string reference;
+  WindowOptions window;
+};
+
+void declare(tool::Tool& app, Options& options);
+
+/// Refuses contradictions and an unwritable output before any work is done. @throws UsageError,
+/// Error(Output)
+void check(const tool::Tool& app, const Options& options);
+
+/// @throws UsageError if its direction has no length
+Lamp lamp_of(const Options& options);
+
+inline Lighting lighting_of(const Options& options) {
+  return options.environment || !options.probe.empty() ? Lighting::Environment : Lighting::Lamp;
+}
+
+} // namespace haarlight::view
