@@ -5,7 +5,6 @@
 namespace haarlight::renderer::detail {
 
 using wavelet::RegionPart;
-using wavelet::SquareCap;
 using wavelet::SquarePlace;
 
 Cap Cap::around_ball(const Eigen::Vector3d& centre, double radius) {
