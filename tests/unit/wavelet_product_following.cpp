@@ -13,6 +13,27 @@
 using namespace haarlight;
 using namespace haarlight::wavelet;
 
+namespace {
+
+/// A light and a lobe, and two builders of their products.
+struct Pair {
+  explicit Pair(int size)
+      : light(tree_of(random_map(size, 9), 0.1)), lobe(tree_of(lobe_map(size, 0), 0.01)) {}
+
+  RotatedReflectance seen(const Vec3& n, const Vec3& wo, float blend) const {
+    return reflectance_at(pyramid, n, wo, blend);
+  }
+
+  Tree light;
+  Tree lobe;
+  TreeView views[2] = {lobe.view(), lobe.view()};
+  Pyramid pyramid{views};
+  AdaptiveProduct following{light.view()};
+  AdaptiveProduct fresh{light.view()};
+};
+
+} // namespace
+
 TEST_CASE("products that may not drift are those built afresh, and reach all they need") {
   const Tree light = tree_of(random_map(256, 9), 0.1);
   const Tree lobes[2] = {tree_of(lobe_map(256, 0), 0.01), tree_of(lobe_map(256, 1), 0.01)};
@@ -45,24 +66,19 @@ TEST_CASE("products that may not drift are those built afresh, and reach all the
 }
 
 TEST_CASE("products that are kept for points nearby reach all that these need, at little loss") {
-  const Tree light = tree_of(random_map(128, 9), 0.1);
-  const Tree lobe = tree_of(lobe_map(128, 0), 0.01);
-  const TreeView views[2] = {lobe.view(), lobe.view()};
-  const Pyramid pyramid(views);
-  AdaptiveProduct following(light.view());
-  AdaptiveProduct fresh(light.view());
+  Pair pair(128);
   int kept = 0;
   float last = 0;
   for (int step = 0; step < 60; ++step) {
     const float turn = 0.003F * static_cast<float>(step);
     const Vec3 n(std::cos(turn), 0.6F * std::sin(turn), 0.8F * std::sin(turn));
     const Vec3 wo = (n + 1.5F * frame_about(n).t).normalized();
-    const auto reflectance = reflectance_at(pyramid, n, wo, 0.5F);
-    const ProductTree& product = following.follow(reflectance, {});
+    const auto reflectance = pair.seen(n, wo, 0.5F);
+    const ProductTree& product = pair.following.follow(reflectance, {});
     const float integral = luminance(product.integral());
     kept += integral == last ? 1 : 0;
     last = integral;
-    const ProductTree& own = fresh.build(reflectance, {});
+    const ProductTree& own = pair.fresh.build(reflectance, {});
     double square = 0;
     double mass = 0;
     for (int i = 0; i < 128 * 128; ++i) {
@@ -128,65 +144,51 @@ double relative_square(const ProductTree& target, const ProductTree& density,
 } // namespace
 
 TEST_CASE("products that know what is in the way spend few samples there, and miss nothing") {
-  const Tree light = tree_of(random_map(128, 9), 0.1);
-  const Tree lobe = tree_of(lobe_map(128, 0), 0.01);
-  const TreeView views[2] = {lobe.view(), lobe.view()};
-  const Pyramid pyramid(views);
-  AdaptiveProduct plain(light.view());
-  AdaptiveProduct knowing(light.view());
+  Pair pair(128);
   for (int step = 0; step < 6; ++step) {
     const float turn = 0.02F * static_cast<float>(step);
     const Vec3 n(std::sin(turn), 0, std::cos(turn));
-    const auto reflectance = reflectance_at(pyramid, n, n, 0);
+    const auto reflectance = pair.seen(n, n, 0);
     const HalfHidden occlusion(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)));
-    const ProductTree& all = plain.build(reflectance, {});
-    const ProductTree& open = knowing.follow(reflectance, {}, &occlusion);
+    const ProductTree& all = pair.fresh.build(reflectance, {});
+    const ProductTree& open = pair.following.follow(reflectance, {}, &occlusion);
     CHECK(luminance(open.integral()) == Approx(luminance(all.integral())).epsilon(0.02));
     CHECK(relative_square(all, open, occlusion) < 10);
     CHECK(relative_square(all, all, occlusion) > 1.3 * relative_square(all, open, occlusion));
     const auto result = chi_square_of(open, 16);
     CHECK(result.pdf_sum == Approx(1).margin(2e-3));
     CHECK(result.statistic < result.limit);
-    CHECK(relative_square(all, knowing.follow(reflectance, {}), HalfHidden(Vec3::Zero())) < 1.1);
+    CHECK(relative_square(all, pair.following.follow(reflectance, {}), HalfHidden(Vec3::Zero())) <
+          1.1);
   }
 }
 
 TEST_CASE("products by what is seen of squares are near the visible part, and miss nothing") {
-  const Tree light = tree_of(random_map(128, 9), 0.1);
-  const Tree lobe = tree_of(lobe_map(128, 0), 0.01);
-  const TreeView views[2] = {lobe.view(), lobe.view()};
-  const Pyramid pyramid(views);
-  AdaptiveProduct plain(light.view());
-  AdaptiveProduct knowing(light.view());
-  const auto reflectance = reflectance_at(pyramid, Vec3::UnitZ(), Vec3::UnitZ(), 0);
+  Pair pair(128);
+  const auto reflectance = pair.seen(Vec3::UnitZ(), Vec3::UnitZ(), 0);
   for (int step = 0; step < 6; ++step) {
     HalfHidden half(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)).normalized());
-    const ProductTree& all = plain.build(reflectance, {});
-    const ProductTree& open = knowing.build(reflectance, {}, half);
+    const ProductTree& all = pair.fresh.build(reflectance, {});
+    const ProductTree& open = pair.following.build(reflectance, {}, half);
     CHECK(relative_square(all, open, half, Vec3::UnitZ()) < 1.25);
     CHECK(relative_square(all, all, half, Vec3::UnitZ()) > 1.5);
     const auto result = chi_square_of(open, 16);
     CHECK(result.pdf_sum == Approx(1).margin(2e-3));
     CHECK(result.statistic < result.limit);
-    const ProductTree& followed = knowing.follow(reflectance, {});
+    const ProductTree& followed = pair.following.follow(reflectance, {});
     CHECK(relative_square(all, followed, HalfHidden(Vec3::Zero())) < 1.1);
   }
 }
 
 TEST_CASE("products that may not grow follow to far points all the same") {
-  const Tree light = tree_of(random_map(256, 9), 0.1);
-  const Tree lobe = tree_of(lobe_map(256, 0), 0.01);
-  const TreeView views[2] = {lobe.view(), lobe.view()};
-  const Pyramid pyramid(views);
-  AdaptiveProduct following(light.view());
-  AdaptiveProduct fresh(light.view());
+  Pair pair(256);
   const AdaptiveOptions scarce = {.variance_bound = 1e-4F, .max_leaves = 300};
   for (int step = 0; step < 12; ++step) {
     const float turn = 0.5F * static_cast<float>(step);
     const Vec3 n(std::cos(turn), std::sin(turn), 0);
-    const auto reflectance = reflectance_at(pyramid, n, n, 0);
-    const Rgb kept = following.follow(reflectance, scarce).integral();
+    const auto reflectance = pair.seen(n, n, 0);
+    const Rgb kept = pair.following.follow(reflectance, scarce).integral();
     CHECK(luminance(kept) ==
-          Approx(luminance(fresh.build(reflectance, scarce).integral())).epsilon(0.02));
+          Approx(luminance(pair.fresh.build(reflectance, scarce).integral())).epsilon(0.02));
   }
 }

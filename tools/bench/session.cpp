@@ -96,4 +96,19 @@ CostModel Session::cost(Points points, std::uint32_t seed, int count,
   return cost;
 }
 
+Runs Session::run_within(double budget, Points points, std::uint32_t seed, int count,
+                         CostModel& cost) const {
+  constexpr int rounds = 3;
+  constexpr int most_spp = 1 << 18;
+  Runs runs;
+  for (int round = 0; round < rounds; ++round) {
+    const int spp = cost.affordable(budget, most_spp);
+    if (spp == runs.spp)
+      break;
+    runs = run(points, spp, seed, count);
+    cost.add(spp, runs.seconds);
+  }
+  return runs;
+}
+
 } // namespace haarlight::bench

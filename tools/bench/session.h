@@ -39,6 +39,11 @@ public:
   CostModel cost(renderer::Points points, std::uint32_t seed, int count,
                  const std::vector<Runs>& all) const;
 
+  /// Runs of about the most samples that fit a budget, seconds of a film. What set-up costs may go
+  /// by their number, so each run tells the model of the next.
+  Runs run_within(double budget, renderer::Points points, std::uint32_t seed, int count,
+                  CostModel& cost) const;
+
   /// Once for a scene: what comes after its files are read.
   double setup_seconds() const { return m_setup_seconds; }
 
