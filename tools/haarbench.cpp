@@ -6,7 +6,7 @@
 #include <bench/plan.h>
 #include <bench/scenes.h>
 #include <bench/summary.h>
-#include <bench/text_file.h>
+#include <html/text_file.h>
 #include <render/film_output.h>
 #include <support/program.h>
 #include <support/progress.h>
@@ -47,8 +47,8 @@ std::vector<Row> rows_of(const std::vector<PairResult>& pairs) {
 
 void write_rows(const Plan& plan, const std::vector<PairResult>& pairs) {
   const std::vector<Row> rows = rows_of(pairs);
-  write_text(plan.folder + "/results.json", json_text(rows));
-  write_text(plan.folder + "/results.csv", csv_text(rows));
+  html::write_text(plan.folder + "/results.json", json_text(rows));
+  html::write_text(plan.folder + "/results.csv", csv_text(rows));
 }
 
 /// Writes the rows of each pair as it is done: long runs that are stopped have not been in vain.
@@ -85,7 +85,7 @@ int compare_samplers(const tool::Tool& app, Plan& plan) {
   const std::vector<PairResult> pairs = measure_all(app, plan, collection);
   const std::vector<Row> rows = rows_of(pairs); // verdicts point into them
   const std::vector<Verdict> verdicts = verdicts_of(rows);
-  write_text(plan.folder + "/report.html", page_html(plan, pairs, verdicts));
+  html::write_text(plan.folder + "/report.html", page_html(plan, pairs, verdicts));
   app.print(describe(verdicts));
   return tool::exit_ok;
 }

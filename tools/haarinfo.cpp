@@ -1,5 +1,6 @@
 // haarinfo: what a .haar file holds.
-#include <support/inspect.h>
+#include <html/text_file.h>
+#include <info/page.h>
 #include <support/map_choice.h>
 #include <support/program.h>
 #include <support/words.h>
@@ -23,6 +24,8 @@ struct Options {
   std::vector<double> tree;
   std::optional<int> level;
   std::string image;
+  std::string page;
+  std::string reference;
   Dump dump = Dump::None;
 };
 
@@ -40,6 +43,12 @@ void declare(tool::Tool& app, Options& options) {
       options.image, "--image", "OUT.png|OUT.exr",
       "Write a picture of the tree or of the whole set; a .png is scaled to a mean of 0.18 and "
       "tone mapped, an .exr holds the values");
+  app.text(options.page, "--html", "REPORT.html",
+           "Write a page with pictures, figures by level, the error by coefficients kept and, of "
+           "BRDF sets, lobes; it needs no other file. Pictures are at most 1024 pixels a side");
+  app.text(options.reference, "--against", "MAPS.exr|OTHER.haar",
+           "With --html: show the three maps that differ most from these, which the trees were "
+           "made of");
   app.choice(options.dump, "--dump", {{"csv", Dump::Csv}},
              "Print all differences in place of the report: column,row,level,x,y,type,r,g,b");
   app.offer_json();
@@ -86,6 +95,13 @@ void write_image(const Options& options, const wavelet::TreeSet& set,
   image::write_png(options.image, picture, {.tone_map = image::ToneMap::Filmic});
 }
 
+void write_page(const Options& options, const wavelet::TreeSet& set, wavelet::FileForm form,
+                const std::vector<wavelet::MapPlace>& trees,
+                const std::vector<tool::TreeFigures>& figures) {
+  const info::PageInput input{options.path, form, options.tree, options.level, options.reference};
+  html::write_text(options.page, info::page_html(set, input, trees, figures));
+}
+
 int inspect(const tool::Tool& app, const Options& options) {
   const auto form = wavelet::file_form(options.path);
   const wavelet::TreeSet set = wavelet::open_tree_set(
@@ -95,20 +111,28 @@ int inspect(const tool::Tool& app, const Options& options) {
   const std::vector<wavelet::MapPlace> trees = chosen_trees(options, set);
   if (!options.image.empty())
     write_image(options, set, trees);
-  if (options.dump == Dump::Csv) {
-    tool::dump_csv(set, trees, [&](const std::string& lines) { app.print(lines); });
+  const int level = options.level.value_or(set.levels());
+  const bool lines = options.dump == Dump::Csv;
+  const auto figures = lines && options.page.empty() ? std::vector<tool::TreeFigures>()
+                                                     : tool::measure_trees(set, trees, level);
+  if (!options.page.empty())
+    write_page(options, set, *form, trees, figures);
+  if (lines) {
+    tool::dump_csv(set, trees, [&](const std::string& text) { app.print(text); });
     return tool::exit_ok;
   }
   tool::Report report = tool::describe_header(set, *form);
-  const int level = options.level.value_or(set.levels());
-  tool::describe_figures(tool::measure_trees(set, trees, level), set.levels(),
-                         app.json() || app.verbose(), report);
+  tool::describe_figures(figures, set.levels(), app.json() || app.verbose(), report);
   app.print(report);
   return tool::exit_ok;
 }
 
 int look_into(const tool::Tool& app, const Options& options) {
   tool::check_picture_path(options.image, "--image");
+  if (!options.page.empty() && !tool::has_extension(options.page, ".html"))
+    throw tool::UsageError("--html: \"" + options.page + "\" does not end in .html");
+  if (!options.reference.empty() && options.page.empty())
+    throw tool::UsageError("--against needs --html");
   return options.validate ? validate(app, options.path) : inspect(app, options);
 }
 

@@ -7,6 +7,7 @@
 #include <view/egl_context.h>
 #include <view/page.h>
 #include <view/view_options.h>
+#include <view/window_run.h>
 
 #include <image/image_exr.h>
 #include <image/png.h>
@@ -107,10 +108,12 @@ void write_page(const ViewScene& scene, PageOptions shown, const Options& option
 
 int view_scene(const tool::Tool& app, const Options& options) {
   check(app, options);
-  const ViewScene scene(options.input);
-  const PageOptions shown = shown_of(scene, options);
   if (app.given("--threads"))
     setenv("LP_NUM_THREADS", std::to_string(thread_count()).c_str(), 1); // llvmpipe's own
+  if (options.frame.empty() && options.page.empty())
+    return view_in_window(app, options);
+  const ViewScene scene(options.input);
+  const PageOptions shown = shown_of(scene, options);
   tool::Report report;
   report.add("width", shown.film.width, "px")
       .add("height", shown.film.height, "px")
@@ -127,8 +130,9 @@ int view_scene(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "haarview",
-                           "Draws trees by GL, without a window, or makes a page that does: a "
-                           "fragment shader reconstructs them at the level each pixel needs.",
-                           declare, view_scene);
+  return tool::run_program(
+      argc, argv, "haarview",
+      "Shows trees by GL, in a window, a picture or a page for a browser: a fragment shader "
+      "reconstructs them at the level each pixel needs.",
+      declare, view_scene);
 }

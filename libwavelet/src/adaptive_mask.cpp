@@ -18,10 +18,10 @@ constexpr float least_kept = 0.04F;
 /// Hiding moves the weight to other squares, which are then refined and tested in turn.
 constexpr int rounds = 3;
 
-Vec3 center_of(const detail::Square& square) {
+Vec3 center_of(const SquarePlace& square) {
   const float side = power_of_two(-square.level);
-  return square_to_sphere(Vec2((static_cast<float>(square.x) + 0.5F) * side,
-                               (static_cast<float>(square.y) + 0.5F) * side));
+  return square_to_sphere(Vec2((static_cast<float>(square.column) + 0.5F) * side,
+                               (static_cast<float>(square.row) + 0.5F) * side));
 }
 
 } // namespace

@@ -81,6 +81,16 @@ const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
   return finish(options, occlusion);
 }
 
+const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
+                                          const AdaptiveOptions& options,
+                                          SquareVisibility& visibility) {
+  m_visibility = &visibility;
+  build(reflectance, options);
+  m_visibility = nullptr;
+  m_reflectance.pyramid = nullptr; // follow() has no product to keep
+  return m_product;
+}
+
 const ProductTree& AdaptiveProduct::follow(const RotatedReflectance& reflectance,
                                            const AdaptiveOptions& options,
                                            const Occlusion* occlusion) {
@@ -133,7 +143,7 @@ float AdaptiveProduct::squared_shift(const ReflectionFrame& reflection) const {
 }
 
 /// A node whose weights are yet to come, in place of a leaf.
-void AdaptiveProduct::new_node(std::int32_t slot, const detail::Square& square) {
+void AdaptiveProduct::new_node(std::int32_t slot, const SquarePlace& square) {
   const std::size_t index = m_product.m_nodes.size();
   m_product.m_nodes.emplace_back();
   m_squares.push_back(square);
@@ -222,6 +232,8 @@ void AdaptiveProduct::expand(std::size_t node, float threshold) {
       see_light(node + i, quadrants[i]);
     detail::weigh(m_reflectance, m_product.m_rests[0].floor,
                   std::span(m_squares).subspan(node, count), quadrants.data());
+    if (m_visibility != nullptr)
+      look(node, std::span(quadrants).first(count));
     for (std::size_t i = 0; i < count; ++i)
       add_leaves(node + i, quadrants[i], threshold);
     node += count;
@@ -254,9 +266,9 @@ void AdaptiveProduct::add_leaves(std::size_t node, const detail::Quadrants& quad
 void AdaptiveProduct::set_leaf(std::uint32_t slot, const detail::Quadrants& quadrants,
                                std::size_t q) {
   ProductLeaf& leaf = m_product.m_leaves[slot];
-  const detail::Square place = square(slot);
-  leaf.x = place.x;
-  leaf.y = place.y;
+  const SquarePlace place = square(slot);
+  leaf.x = static_cast<std::uint16_t>(place.column);
+  leaf.y = static_cast<std::uint16_t>(place.row);
   leaf.level = static_cast<std::uint8_t>(place.level);
   leaf.reflectance = quadrants.reflectance[q];
   leaf.slope = {quadrants.slope_x[q], quadrants.slope_y[q]};

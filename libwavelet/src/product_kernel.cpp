@@ -26,15 +26,15 @@ struct Lanes {
   Pyramid::Places places;
 };
 
-void gather(std::span<const Square> squares, const Pyramid& pyramid, Lanes& lanes) {
+void gather(std::span<const SquarePlace> squares, const Pyramid& pyramid, Lanes& lanes) {
   lanes.count = 4 * static_cast<int>(squares.size());
   for (std::size_t i = 0; i < squares.size(); ++i)
     for (unsigned q = 0; q < 4; ++q) {
-      const Square quadrant = squares[i].quadrant(q);
+      const SquarePlace quadrant = squares[i].quadrant(q);
       const float side = power_of_two(-quadrant.level);
       lanes.side[4 * i + q] = side;
-      lanes.places.u[4 * i + q] = (static_cast<float>(quadrant.x) + 0.5F) * side;
-      lanes.places.v[4 * i + q] = (static_cast<float>(quadrant.y) + 0.5F) * side;
+      lanes.places.u[4 * i + q] = (static_cast<float>(quadrant.column) + 0.5F) * side;
+      lanes.places.v[4 * i + q] = (static_cast<float>(quadrant.row) + 0.5F) * side;
       pyramid.set_level(lanes.places, 4 * i + q, quadrant.level);
     }
 }
@@ -128,7 +128,7 @@ float splittable_area(const Pyramid& pyramid, int level) {
 } // namespace
 
 HAARLIGHT_CPU_CLONES void weigh(const RotatedReflectance& reflectance, Float4 floor,
-                                std::span<const Square> squares, Quadrants* quadrants) {
+                                std::span<const SquarePlace> squares, Quadrants* quadrants) {
   const Pyramid& pyramid = *reflectance.pyramid;
   Lanes lanes;
   gather(squares, pyramid, lanes);

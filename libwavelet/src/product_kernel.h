@@ -31,7 +31,7 @@ inline constexpr std::size_t square_batch = 16;
 /// Works out all of the quadrants' numbers but their light, which is given.
 /// @param floor   of the reflectance, lanes R, G, B
 /// @param squares at most square_batch; as many quadrants
-void weigh(const RotatedReflectance& reflectance, Float4 floor, std::span<const Square> squares,
-           Quadrants* quadrants);
+void weigh(const RotatedReflectance& reflectance, Float4 floor,
+           std::span<const SquarePlace> squares, Quadrants* quadrants);
 
 } // namespace haarlight::wavelet::detail

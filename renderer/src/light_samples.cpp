@@ -16,8 +16,7 @@ LightSamples::LightSamples(const LoadedScene& scene, const RenderOptions& option
                            const RenderFactories& factories)
     : m_scene(scene), m_options(options), m_sampler(factories.sampler->make(samples_of(options))),
       m_integrator(factories.integrator ? factories.integrator->make(samples_of(options))
-                                        : nullptr),
-      m_occlusion(scene) {}
+                                        : nullptr) {}
 
 void LightSamples::forget() {
   m_sampler->forget();
@@ -30,9 +29,8 @@ void LightSamples::prepare(const PixelHit& seen, ShadingCost& cost) {
   const Material& material = m_scene.material_of(seen.hit.object);
   m_seen = &seen;
   m_point = shading_point(light.to_light(seen.hit.normal), light.to_light(seen.wo));
-  m_occlusion.turn_to(seen.hit);
   if (m_options.estimator == Estimator::Unbiased && m_scene.shapes().may_occlude(seen.hit.object))
-    m_point.occlusion = &m_occlusion;
+    m_point.hit = &seen.hit;
   const auto start = std::chrono::steady_clock::now();
   m_sampler->prepare(m_point, material);
   if (m_integrator)
@@ -75,15 +73,6 @@ bool LightSamples::visible(std::size_t i) const {
     return false;
   const Vec3 w = m_scene.light().to_world(m_directions[i].direction);
   return !m_scene.shapes().occluded(leave(m_seen->hit, w));
-}
-
-/// Below the surface nothing counts as hidden: what lies there is no light's way.
-void LightSamples::Occlusion::find(std::span<const Vec3> directions,
-                                   std::span<std::uint8_t> hidden) const {
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const Vec3 w = m_scene.light().to_world(directions[i]);
-    hidden[i] = m_hit->normal.dot(w) > 0 && m_scene.shapes().occluded(leave(*m_hit, w)) ? 1 : 0;
-  }
 }
 
 } // namespace haarlight::renderer

@@ -35,23 +35,10 @@ public:
   float pdf(std::size_t i) const { return m_directions[i].pdf; }
 
 private:
-  /// What stands in the way of a hit.
-  class Occlusion : public wavelet::Occlusion {
-  public:
-    explicit Occlusion(const LoadedScene& scene) : m_scene(scene) {}
-    void turn_to(const Hit& hit) { m_hit = &hit; }
-    void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override;
-
-  private:
-    const LoadedScene& m_scene;
-    const Hit* m_hit = nullptr;
-  };
-
   const LoadedScene& m_scene;
   const RenderOptions& m_options;
   std::unique_ptr<Sampler> m_sampler;
   std::unique_ptr<Sampler> m_integrator; ///< of L_ns, where the sampler has none
-  Occlusion m_occlusion;
   const PixelHit* m_seen = nullptr;
   ShadingPoint m_point;
   std::vector<DirectionSample> m_directions;

@@ -1,14 +1,17 @@
 // What haarbench makes of its command line, and of its figures.
+#include <bench/look.h>
 #include <bench/pictures.h>
 #include <bench/plan.h>
-#include <bench/plot.h>
 #include <bench/rows.h>
 #include <bench/summary.h>
+
+#include <html/plot.h>
 
 #include <catch2/catch.hpp>
 
 using namespace haarlight;
 using namespace haarlight::bench;
+using namespace haarlight::html;
 
 namespace {
 

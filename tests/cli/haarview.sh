@@ -109,8 +109,6 @@ expect 0 haarview brdf.haar --size 32x32 --frame frame.png
 same once.exr twice.exr
 
 # what goes wrong
-expect 2 haarview brdf.haar
-expect 2 haarview brdf.haar -q
 expect 2 haarview brdf.haar --frame picture.jpg
 expect 2 haarview brdf.haar --frame picture.exr --level 14
 expect 2 haarview brdf.haar --frame picture.exr --light-direction 0,0,0

@@ -4,6 +4,8 @@
 #include "product_of.h"
 #include "random_map.h"
 
+#include <wavelet/square_cap.h>
+
 #include <catch2/catch.hpp>
 
 #include <random>
@@ -83,7 +85,7 @@ TEST_CASE("products that are kept for points nearby reach all that these need, a
 namespace {
 
 /// Everything on one side of a plane.
-class HalfHidden : public Occlusion {
+class HalfHidden : public Occlusion, public SquareVisibility {
 public:
   explicit HalfHidden(const Vec3& side) : m_side(side) {}
   bool hides(const Vec3& w) const { return m_side.dot(w) > 0; }
@@ -91,21 +93,31 @@ public:
     for (std::size_t i = 0; i < directions.size(); ++i)
       hidden[i] = hides(directions[i]) ? 1 : 0;
   }
+  void look(std::span<const SquarePlace> squares, std::span<SquareView> views) override {
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      const float seen = positive_share_of(squares[i], [&](Float4 x, Float4 y, Float4 z) {
+        return -(m_side.x() * x + m_side.y() * y + m_side.z() * z);
+      });
+      views[i] = {seen, views[i].occluders * (seen > 0 && seen < 1 ? 1 : 0)};
+    }
+  }
 
 private:
   Vec3 m_side;
 };
 
 /// Second moment of the target's visible part over the density, relative to its squared mean.
+/// @param n what lies below its horizon is no part of the target
 double relative_square(const ProductTree& target, const ProductTree& density,
-                       const HalfHidden& occlusion) {
+                       const HalfHidden& occlusion, const Vec3& n = Vec3::Zero()) {
   double square = 0;
   double mean = 0;
   for (int i = 0; i < 128 * 128; ++i) {
     const Vec2 p((static_cast<float>(i % 128) + 0.5F) / 128,
                  (static_cast<float>(i / 128) + 0.5F) / 128);
     const auto f = static_cast<double>(target.pdf(p.x(), p.y()));
-    if (f <= 0 || occlusion.hides(square_to_sphere(p)))
+    const Vec3 w = square_to_sphere(p);
+    if (f <= 0 || occlusion.hides(w) || n.dot(w) < 0)
       continue;
     mean += f / (128 * 128);
     square += f * f / static_cast<double>(density.pdf(p.x(), p.y())) / (128 * 128);
@@ -136,6 +148,28 @@ TEST_CASE("products that know what is in the way spend few samples there, and mi
     CHECK(result.pdf_sum == Approx(1).margin(2e-3));
     CHECK(result.statistic < result.limit);
     CHECK(relative_square(all, knowing.follow(reflectance, {}), HalfHidden(Vec3::Zero())) < 1.1);
+  }
+}
+
+TEST_CASE("products by what is seen of squares are near the visible part, and miss nothing") {
+  const Tree light = tree_of(random_map(128, 9), 0.1);
+  const Tree lobe = tree_of(lobe_map(128, 0), 0.01);
+  const TreeView views[2] = {lobe.view(), lobe.view()};
+  const Pyramid pyramid(views);
+  AdaptiveProduct plain(light.view());
+  AdaptiveProduct knowing(light.view());
+  const auto reflectance = reflectance_at(pyramid, Vec3::UnitZ(), Vec3::UnitZ(), 0);
+  for (int step = 0; step < 6; ++step) {
+    HalfHidden half(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)).normalized());
+    const ProductTree& all = plain.build(reflectance, {});
+    const ProductTree& open = knowing.build(reflectance, {}, half);
+    CHECK(relative_square(all, open, half, Vec3::UnitZ()) < 1.25);
+    CHECK(relative_square(all, all, half, Vec3::UnitZ()) > 1.5);
+    const auto result = chi_square_of(open, 16);
+    CHECK(result.pdf_sum == Approx(1).margin(2e-3));
+    CHECK(result.statistic < result.limit);
+    const ProductTree& followed = knowing.follow(reflectance, {});
+    CHECK(relative_square(all, followed, HalfHidden(Vec3::Zero())) < 1.1);
   }
 }
 

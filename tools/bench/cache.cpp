@@ -1,6 +1,6 @@
 #include <bench/cache.h>
 
-#include <bench/text_file.h>
+#include <html/text_file.h>
 #include <support/progress.h>
 #include <support/words.h>
 
@@ -43,7 +43,7 @@ std::optional<double> noted_seconds(const std::string& path, const std::string& 
 
 void write_note(const std::string& path, const std::string& key, double seconds) {
   const ordered_json note = {{"key", key}, {"hash", file_hash(path)}, {"cpu_seconds", seconds}};
-  write_text(path + ".json", note.dump(2) + '\n');
+  html::write_text(path + ".json", note.dump(2) + '\n');
 }
 
 std::string key_of(const Subject& subject, int size, int across, int down) {

@@ -1,5 +1,7 @@
 #pragma once
-// How samplers look in figures, and numbers in text.
+// How samplers look in figures and tables.
+
+#include <html/look.h>
 
 #include <renderer/sampler_kind.h>
 
@@ -7,33 +9,10 @@
 
 namespace haarlight::bench {
 
-/// The same in every figure.
-struct Look {
-  std::string colour;  ///< as in #1f77b4
-  int marker = 0;      ///< one of marker_count shapes
-  bool dashed = false; ///< biased samplers
-};
+/// The same in every figure; dashed if the sampler is biased.
+html::Look look_of(renderer::SamplerKind kind);
 
-inline constexpr int marker_count = 5;
-
-Look look_of(renderer::SamplerKind kind);
-
-/// A shape about (x, y) as SVG.
-std::string marker_svg(const Look& look, double x, double y);
-
-/// A line with its marker, to stand beside a name.
-std::string swatch_svg(const Look& look);
-
-/// Three significant digits, as in 0.00123 or 1.5 × 10⁻⁷ in HTML; a dash for what is unknown.
-std::string number_html(double number);
-
-/// A text's &, <, > and quotes made harmless.
-std::string escaped(const std::string& text);
-
-/// Four decimals, as in 0.9987; a dash for what is unknown.
-std::string ratio_html(double number);
-
-/// Fixed point, for coordinates.
-std::string fixed(double number);
+/// A sampler's name beside its colour, with a mark if it is biased.
+std::string sampler_html(const std::string& name);
 
 } // namespace haarlight::bench

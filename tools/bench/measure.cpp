@@ -19,6 +19,7 @@ namespace {
 /// Seeds of the reference lie apart from all others.
 constexpr std::uint32_t reference_seeds = 0x80000000U;
 constexpr int most_spp = 1 << 18;
+constexpr int affordable_rounds = 3;
 
 class PairMeasurement {
 public:
@@ -86,7 +87,7 @@ private:
       all.push_back(session.run(points, spp, m_seed, m_plan.seeds));
       m_done(spp * m_plan.seeds);
     }
-    const CostModel cost = session.cost(points, m_seed, m_plan.seeds, all);
+    CostModel cost = session.cost(points, m_seed, m_plan.seeds, all);
     m_sampler.seconds_per_sample =
         cost.seconds_per_spp() / static_cast<double>(m_reference.mean.size());
     add_equal_samples(all);
@@ -95,13 +96,28 @@ private:
     if (budgets.empty())
       budgets = own ? seconds_of(all) : m_plan.seconds;
     for (std::size_t i = 0; i < budgets.size(); ++i) {
-      const int spp = own ? all[i].spp : cost.affordable(budgets[i], most_spp);
-      const Runs runs = own ? std::move(all[i]) : session.run(points, spp, m_seed, m_plan.seeds);
+      const Runs runs =
+          own ? std::move(all[i]) : affordable_runs(session, points, budgets[i], cost);
       const Row& row = add_equal_time(runs, budgets[i]);
       if (i == 0 && points == m_plan.points.front())
-        m_result.exhibits.push_back({kind, spp, row.relmse, runs.first});
+        m_result.exhibits.push_back({kind, runs.spp, row.relmse, runs.first});
       m_done(m_plan.spps[std::min(i, m_plan.spps.size() - 1)] * m_plan.seeds);
     }
+  }
+
+  /// Runs of about the most samples that fit a budget. What set-up costs may go by their number, so
+  /// each run tells the model of the next.
+  Runs affordable_runs(const Session& session, Points points, double budget,
+                       CostModel& cost) const {
+    Runs runs;
+    for (int round = 0; round < affordable_rounds; ++round) {
+      const int spp = cost.affordable(budget, most_spp);
+      if (spp == runs.spp)
+        break;
+      runs = session.run(points, spp, m_seed, m_plan.seeds);
+      cost.add(spp, runs.seconds);
+    }
+    return runs;
   }
 
   void add_equal_samples(const std::vector<Runs>& all) {

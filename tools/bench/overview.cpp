@@ -1,12 +1,17 @@
 #include <bench/overview.h>
 
-#include <bench/cells.h>
 #include <bench/look.h>
+
+#include <html/cells.h>
+#include <html/text.h>
 
 #include <cmath>
 #include <map>
 
 namespace haarlight::bench {
+
+using namespace html;
+
 namespace {
 
 /// Verdicts of one mode by pair, each pair's by rising level.

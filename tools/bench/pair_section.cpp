@@ -1,14 +1,19 @@
 #include <bench/pair_section.h>
 
-#include <bench/cells.h>
 #include <bench/look.h>
 #include <bench/pictures.h>
-#include <bench/plot.h>
+
+#include <html/cells.h>
+#include <html/plot.h>
+#include <html/text.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace haarlight::bench {
+
+using namespace html;
+
 namespace {
 
 /// Rows of one sampler and kind of points, of one mode; both modes if it is empty.

@@ -1,8 +1,9 @@
 #include <bench/pictures.h>
 
+#include <html/png_uri.h>
+
 #include <image/exposure.h>
 #include <image/false_colour.h>
-#include <image/png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,24 +12,6 @@ namespace haarlight::bench {
 namespace {
 
 constexpr int shown_at_most = 128;
-
-std::string base64(const std::string& bytes) {
-  static constexpr char digits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63U];
-  }
-  return text;
-}
-
-std::string uri_of(const image::Picture& picture, const image::PngOptions& options = {}) {
-  return "data:image/png;base64," + base64(image::png_bytes(picture, options));
-}
 
 image::Picture cropped(const image::Picture& picture, const Crop& crop) {
   image::Picture result(crop.width, crop.height);
@@ -66,8 +49,8 @@ Crop crop_of(const image::Picture& picture) {
 std::string picture_uri(const PairResult& pair, const image::Picture& picture) {
   const Crop crop = crop_of(pair.reference);
   const float gain = image::middle_grey_gain(cropped(pair.reference, crop));
-  return uri_of(cropped(picture, crop),
-                {std::log2(static_cast<double>(gain)), image::ToneMap::Filmic});
+  return html::png_uri(cropped(picture, crop),
+                       {std::log2(static_cast<double>(gain)), image::ToneMap::Filmic});
 }
 
 std::string error_uri(const PairResult& pair, const image::Picture& picture) {
@@ -84,14 +67,14 @@ std::string error_uri(const PairResult& pair, const image::Picture& picture) {
                   ? image::false_colour(std::clamp(root_with_sign(error / scale), -1.0F, 1.0F))
                   : Rgb::Ones());
     }
-  return uri_of(map);
+  return html::png_uri(map);
 }
 
 std::string legend_uri() {
   image::Picture bar(201, 1);
   for (int x = 0; x < bar.width; ++x)
     bar.set(x, 0, image::false_colour(static_cast<float>(x - 100) / 100));
-  return uri_of(bar);
+  return html::png_uri(bar);
 }
 
 } // namespace haarlight::bench

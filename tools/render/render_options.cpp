@@ -28,7 +28,8 @@ void declare_sampling(Tool& app, RenderOptions& render) {
             0, 1e6);
   app.value(render.sampling.product.variance_bound, "--product-variance",
             "Relative variance per sample at which products stop refining; 0 = 0.12 / sqrt(spp) "
-            "within 0.002 to 0.1, thrice that where there may be shadows, and 0.001 for "
+            "within 0.002 to 0.1, thrice that where there may be shadows (product-visibility: six "
+            "times), and 0.001 for "
             "bidirectional and ratio",
             0, 100);
   app.value(render.sampling.product.max_leaves, "--product-leaves", "Leaves of a product at most",

@@ -7,7 +7,7 @@
 
 #include <wavelet/error.h>
 #include <wavelet/input_file.h>
-#include <wavelet/tree_set.h>
+#include <wavelet/packed_set.h>
 
 #include <cstring>
 
@@ -34,7 +34,7 @@ bool begins_as_exr(const InputFile& file) {
 OpenSet open_set(const std::string& path) {
   const InputFile file(path);
   if (wavelet::begins_as_tree_set(file)) {
-    auto trees = std::make_shared<const wavelet::TreeSet>(path);
+    auto trees = std::make_shared<const wavelet::TreeSet>(wavelet::open_tree_set(path));
     const bool grey = trees->channels() == 1;
     return {path, wavelet::tree_maps(std::move(trees)), grey};
   }

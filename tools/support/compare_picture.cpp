@@ -2,7 +2,6 @@
 
 #include <support/words.h>
 
-#include <image/contact_sheet.h>
 #include <image/exposure.h>
 #include <image/false_colour.h>
 #include <image/image_exr.h>
@@ -19,7 +18,6 @@ namespace {
 using image::Picture;
 using wavelet::Map;
 
-constexpr int largest_side = 1024; ///< of a map as it is shown
 constexpr int smallest_side = 320; ///< that the legend's figures need
 
 Map difference_of(const Map& a, const Map& b) {
@@ -65,7 +63,7 @@ Picture enlarged(const Picture& picture) {
   return large;
 }
 
-Picture shown_map(Map map) {
+Picture shown_map(Map map, int largest_side) {
   while (map.size > largest_side)
     map = wavelet::halved(map);
   Picture picture;
@@ -74,7 +72,7 @@ Picture shown_map(Map map) {
   return enlarged(picture);
 }
 
-Picture shown_difference(image::SignedField field) {
+Picture shown_difference(image::SignedField field, int largest_side) {
   while (field.size > largest_side)
     field = image::halved(field);
   return image::false_colour_picture(field, enlargement(field.size));
@@ -82,17 +80,24 @@ Picture shown_difference(image::SignedField field) {
 
 } // namespace
 
-void write_comparison(const std::string& path, const ComparedMaps& maps) {
-  if (has_extension(path, ".exr"))
-    return write_channels(path, maps);
-  std::vector<image::SheetEntry> entries = {{shown_map(maps.a), "A " + maps.name_a},
-                                            {shown_map(maps.b), "B " + maps.name_b}};
+std::vector<image::SheetEntry> comparison_pictures(const ComparedMaps& maps, int largest_side) {
+  std::vector<image::SheetEntry> entries = {{shown_map(maps.a, largest_side), maps.name_a},
+                                            {shown_map(maps.b, largest_side), maps.name_b}};
   const float gain = image::middle_grey_gain(entries.front().picture);
   for (image::SheetEntry& entry : entries) {
     image::brighten(entry.picture, gain);
     image::tone_map(entry.picture, {.tone_map = image::ToneMap::Filmic});
   }
-  entries.push_back({shown_difference(signed_difference(maps)), "B - A"});
+  entries.push_back({shown_difference(signed_difference(maps), largest_side), "B - A"});
+  return entries;
+}
+
+void write_comparison(const std::string& path, const ComparedMaps& maps) {
+  if (has_extension(path, ".exr"))
+    return write_channels(path, maps);
+  std::vector<image::SheetEntry> entries = comparison_pictures(maps, 1024);
+  entries[0].caption = std::string("A ").append(maps.name_a);
+  entries[1].caption = std::string("B ").append(maps.name_b);
   image::write_png(path, image::contact_sheet(entries, {.columns = 3}));
 }
 

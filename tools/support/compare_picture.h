@@ -1,9 +1,12 @@
 #pragma once
 // Two maps and their difference as a picture.
 
+#include <image/contact_sheet.h>
+
 #include <wavelet/map_set.h>
 
 #include <string>
+#include <vector>
 
 namespace haarlight::tool {
 
@@ -14,6 +17,10 @@ struct ComparedMaps {
   std::string name_a;
   std::string name_b;
 };
+
+/// A, B and the luminance of B − A as they are shown, from 0 to 1, under their names. Maps larger
+/// than `largest_side` are shown smaller; the difference carries a legend below.
+std::vector<image::SheetEntry> comparison_pictures(const ComparedMaps& maps, int largest_side);
 
 /// As .exr: channels R, G, B hold B − A, channels A.R … and B.R … the maps. As .png: A, B and the
 /// luminance of B − A side by side. A and B share one exposure, which brings A to a mean of 0.18;

@@ -39,6 +39,9 @@ std::vector<wavelet::MapPlace> all_trees(const wavelet::TreeSet& set);
 std::vector<TreeFigures> measure_trees(const wavelet::TreeSet& set,
                                        const std::vector<wavelet::MapPlace>& trees, int level);
 
+/// What they hold together. @param levels of their set
+TreeFigures sum_of(const std::vector<TreeFigures>& figures, int levels);
+
 /// `mapped` or `packed`.
 const char* form_name(wavelet::FileForm form);
 
@@ -52,8 +55,8 @@ void describe_figures(const std::vector<TreeFigures>& figures, int levels, bool 
 /// A tree reconstructed at a level, as it is (linear, possibly negative).
 image::Picture tree_picture(const wavelet::TreeView& tree, int level);
 
-/// The finest level at which atlas() stays below 2048 pixels a side.
-int atlas_level(const wavelet::TreeSet& set);
+/// The finest level at which atlas() stays within `largest_side` pixels a side.
+int atlas_level(const wavelet::TreeSet& set, std::int64_t largest_side = 2048);
 /// All trees at a level: the table of the set, or, if it has one row, the row folded to a square.
 image::Picture atlas(const wavelet::TreeSet& set, int level);
 /// Pixels along the atlas' longer side.

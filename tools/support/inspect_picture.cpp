@@ -9,8 +9,6 @@ namespace {
 
 using wavelet::TreeSet;
 
-constexpr std::int64_t largest_default_side = 2048;
-
 struct Grid {
   int columns;
   int rows;
@@ -41,9 +39,9 @@ std::int64_t atlas_side(const TreeSet& set, int level) {
   return std::int64_t{std::max(grid.columns, grid.rows)} << level;
 }
 
-int atlas_level(const TreeSet& set) {
+int atlas_level(const TreeSet& set, std::int64_t largest_side) {
   int level = set.levels();
-  while (level > 0 && atlas_side(set, level) > largest_default_side)
+  while (level > 0 && atlas_side(set, level) > largest_side)
     --level;
   return level;
 }

@@ -37,24 +37,6 @@ std::vector<double> channels_of(const Rgb& c) {
   return {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])};
 }
 
-TreeFigures sum_of(const std::vector<TreeFigures>& figures, int levels) {
-  TreeFigures sum;
-  sum.levels.resize(static_cast<std::size_t>(levels));
-  for (const TreeFigures& tree : figures) {
-    sum.nodes += tree.nodes;
-    sum.bytes += tree.bytes;
-    sum.energy += tree.energy;
-    sum.mass += tree.mass;
-    sum.negative_mass += tree.negative_mass;
-    for (std::size_t l = 0; l < sum.levels.size(); ++l) {
-      sum.levels[l].nodes += tree.levels[l].nodes;
-      sum.levels[l].nonzero += tree.levels[l].nonzero;
-      sum.levels[l].energy += tree.levels[l].energy;
-    }
-  }
-  return sum;
-}
-
 void describe_levels(const TreeFigures& sum, double trees, Report& report) {
   for (std::size_t l = 0; l < sum.levels.size(); ++l) {
     const LevelFigures& level = sum.levels[l];
@@ -89,6 +71,24 @@ void describe_tree(const TreeFigures& tree, Report& report) {
 }
 
 } // namespace
+
+TreeFigures sum_of(const std::vector<TreeFigures>& figures, int levels) {
+  TreeFigures sum;
+  sum.levels.resize(static_cast<std::size_t>(levels));
+  for (const TreeFigures& tree : figures) {
+    sum.nodes += tree.nodes;
+    sum.bytes += tree.bytes;
+    sum.energy += tree.energy;
+    sum.mass += tree.mass;
+    sum.negative_mass += tree.negative_mass;
+    for (std::size_t l = 0; l < sum.levels.size(); ++l) {
+      sum.levels[l].nodes += tree.levels[l].nodes;
+      sum.levels[l].nonzero += tree.levels[l].nonzero;
+      sum.levels[l].energy += tree.levels[l].energy;
+    }
+  }
+  return sum;
+}
 
 const char* form_name(wavelet::FileForm form) {
   return form == wavelet::FileForm::Packed ? "packed" : "mapped";

@@ -40,9 +40,11 @@ void declare_environment(tool::Tool& app, Options& options) {
 void declare(tool::Tool& app, Options& options) {
   app.input(options.input, "SCENE.json|FILE.haar",
             "Scene of spheres and planes, or a set of a BRDF's trees by θ_r, shown on a sphere");
-  app.text(options.frame, "--frame", "OUT.exr|.png", "Picture to write; a .png is tone-mapped");
+  app.text(options.frame, "--frame", "OUT.exr|.png",
+           "Picture to write, in place of a window to show; a .png is tone-mapped");
   app.text(options.page, "--export", "PAGE.html",
-           "Page to write that shows the same in a browser with WebGL 2, all in one file; with "
+           "Page to write, in place of a window, that shows the same in a browser with WebGL 2, "
+           "all in one file; with "
            "--compare, its #check compares as well");
   app.text(options.size, "--size", "WxH", "Size in pixels, in place of the scene's or 256x256");
   app.value(options.level, "--level",
@@ -59,12 +61,11 @@ void declare(tool::Tool& app, Options& options) {
            "haarrender's product-integral, without the background)");
   app.text(options.reference, "--reference", "REF.exr",
            "Picture to --compare with in place of that; of --environment without its background");
+  declare_window(app, options.window);
   app.offer_json();
 }
 
 void check(const tool::Tool& app, const Options& options) {
-  if (options.frame.empty() && options.page.empty())
-    throw tool::UsageError("neither --frame nor --export is given, so there is nothing to do");
   if (!options.frame.empty())
     tool::check_picture_path(options.frame, "--frame");
   if (app.given("--light-position") && app.given("--light-direction"))
@@ -76,6 +77,7 @@ void check(const tool::Tool& app, const Options& options) {
   for (const char* other : {"--light-level", "--tolerance"})
     if (lamp && app.given(other))
       throw tool::UsageError(std::string(other).append(": is of --environment"));
+  check_window(app, options.window, options.frame.empty() && options.page.empty());
   for (const std::string& output : {options.frame, options.page})
     if (!output.empty())
       const OutputFile trial(output);

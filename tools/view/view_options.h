@@ -3,6 +3,7 @@
 
 #include <support/tool.h>
 #include <view/frame.h>
+#include <view/window_options.h>
 
 #include <optional>
 #include <string>
@@ -27,6 +28,7 @@ struct Options {
   int repeat = 3;
   bool compare = false;
   std::string reference;
+  WindowOptions window;
 };
 
 void declare(tool::Tool& app, Options& options);
@@ -40,7 +42,7 @@ Lamp lamp_of(const Options& options);
 
 /// Squares along a side of the light as 2^N: fewer in a page, which would be large.
 inline int light_level_of(const Options& options) {
-  return options.light_level.value_or(options.frame.empty() ? 8 : 10);
+  return options.light_level.value_or(options.frame.empty() && !options.page.empty() ? 8 : 10);
 }
 
 inline Lighting lighting_of(const Options& options) {

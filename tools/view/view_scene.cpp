@@ -21,11 +21,6 @@ SceneDescription sphere_of(const std::string& path) {
   return scene;
 }
 
-SceneDescription describe(const std::string& path) {
-  const bool trees = wavelet::begins_as_tree_set(InputFile(path));
-  return trees ? sphere_of(path) : load_scene(path);
-}
-
 TreeTable stored_trees(const std::string& path) {
   TreeTable trees(path, wavelet::SetKind::Brdf);
   if (!trees.info().cosine || trees.info().rolls != 1)
@@ -48,7 +43,12 @@ TreeTable trees_of(const MaterialDescription& material) {
 
 } // namespace
 
-ViewScene::ViewScene(const std::string& path) : m_description(describe(path)) {
+SceneDescription describe_view(const std::string& path) {
+  const bool trees = wavelet::begins_as_tree_set(InputFile(path));
+  return trees ? sphere_of(path) : load_scene(path);
+}
+
+ViewScene::ViewScene(SceneDescription description) : m_description(std::move(description)) {
   for (const ObjectDescription& object : m_description.objects)
     m_shapes.add(object.shape, object.transform);
   check_shapes();

@@ -26,13 +26,17 @@ struct Columns {
   int levels = 0;
 };
 
+/// @param path a scene file, or a θ_r-only BRDF set, which becomes a unit sphere
+/// @throws Error(Input) if it is neither
+renderer::SceneDescription describe_view(const std::string& path);
+
 /// A scene's shapes and trees, ready to be shown; its light, background and emission are not.
 class ViewScene {
 public:
-  /// @param path a scene file, or a θ_r-only BRDF set, which becomes a unit sphere
   /// @throws Error(Input) if a file is broken or of the wrong kind, or a shape is neither sphere
   ///         nor plane
-  explicit ViewScene(const std::string& path);
+  explicit ViewScene(const std::string& path) : ViewScene(describe_view(path)) {}
+  explicit ViewScene(renderer::SceneDescription description);
 
   const renderer::SceneDescription& description() const { return m_description; }
   const renderer::ShapeSet& shapes() const { return m_shapes; }

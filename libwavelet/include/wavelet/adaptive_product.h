@@ -3,6 +3,7 @@
 
 #include <wavelet/product_tree.h>
 #include <wavelet/pyramid.h>
+#include <wavelet/square_visibility.h>
 
 #include <span>
 #include <vector>
@@ -46,17 +47,6 @@ struct LeafShare {
   bool tested = false;
 };
 
-/// A square of side 2^-level, in squares of its level.
-struct Square {
-  std::int32_t level = 0;
-  std::uint16_t x = 0, y = 0;
-
-  Square quadrant(unsigned q) const {
-    return {level + 1, static_cast<std::uint16_t>(2 * x + (q & 1U)),
-            static_cast<std::uint16_t>(2 * y + (q >> 1U))};
-  }
-};
-
 struct Quadrants;
 
 } // namespace detail
@@ -78,7 +68,12 @@ public:
   const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
                            const Occlusion* occlusion = nullptr);
 
-  /// The same at a point close to that of the last product. That is kept as it is while little has
+  /// The same where squares get the density that what is seen of them is worth, but never none; the
+  /// product's integral stays that of light and reflectance. Much refined where shadows end.
+  const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
+                           SquareVisibility& visibility);
+
+  /// The first at a point close to that of the last product. That is kept as it is while little has
   /// changed since it was built: its density is above 0 wherever this point's integrand is, but its
   /// integral is another point's. Else it is built afresh.
   const ProductTree& follow(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
@@ -98,6 +93,9 @@ private:
   void find_candidates();
   void keep(std::uint32_t slot, float share);
   void unmask();
+  void look(std::size_t first, std::span<detail::Quadrants> quadrants);
+  void find_lookouts(std::size_t first, std::span<const detail::Quadrants> quadrants);
+  void keep(std::uint32_t slot, float seen, detail::Quadrants& quadrants) const;
   double excess_error(const AdaptiveOptions& options) const;
   void split_above(float threshold);
   void expand(std::size_t first_node, float threshold);
@@ -107,15 +105,13 @@ private:
   float threshold(double excess) const;
   bool has_room() const { return m_product.leaf_count() + 3 <= m_limit; }
   void split(std::uint32_t slot);
-  void new_node(std::int32_t slot, const detail::Square& square);
+  void new_node(std::int32_t slot, const SquarePlace& square);
 
   std::size_t slot_count() const { return 4 * m_product.m_nodes.size(); }
   bool is_leaf(std::uint32_t slot) const {
     return m_product.m_nodes[slot / 4].child[slot & 3U] < 0;
   }
-  detail::Square square(std::uint32_t slot) const {
-    return m_squares[slot / 4].quadrant(slot & 3U);
-  }
+  SquarePlace square(std::uint32_t slot) const { return m_squares[slot / 4].quadrant(slot & 3U); }
   float area(std::uint32_t slot) const {
     return power_of_two(-2 * (m_squares[slot / 4].level + 1));
   }
@@ -124,14 +120,18 @@ private:
   std::vector<ProductLeaf> m_start; ///< of the nodes that are the same for every product
   RotatedReflectance m_reflectance;
   std::size_t m_limit = 0;
-  std::vector<detail::Square> m_squares; ///< by node
+  std::vector<SquarePlace> m_squares; ///< by node
   std::vector<std::int32_t> m_parent_slots;
   std::vector<float> m_errors; ///< by slot, or longer: what each leaf leaves of the variance, by
                                ///< estimate; 0 where there is a node
   std::vector<detail::LeafShare>
       m_shares;          ///< by slot, or longer; of density 0 where there is a node
   bool m_masked = false; ///< some leaf's share is not all of it
-  std::vector<std::uint32_t> m_candidates; ///< slots of leaves to be tested
+  std::vector<std::uint32_t> m_candidates;  ///< slots of leaves to be tested
+  SquareVisibility* m_visibility = nullptr; ///< while a product is built by it
+  std::vector<std::uint64_t> m_occluders;   ///< by slot, of squares that were looked at
+  std::vector<SquarePlace> m_places;        ///< of candidates
+  std::vector<SquareView> m_views;
   std::vector<Vec3> m_directions;
   std::vector<std::uint8_t> m_hidden;
   double m_weight = 0;

@@ -5,6 +5,7 @@
 // every factor for the quadrants of many squares at once, so that the call itself costs nothing.
 
 #include <wavelet/adaptive_product.h>
+#include <wavelet/square_place.h>
 #include <wavelet/symmetry.h>
 #include <wavelet/tree.h>
 
@@ -13,18 +14,6 @@
 #include <cstdint>
 
 namespace haarlight::wavelet {
-
-/// The square of side 2^-level whose lower corner is (column, row) · 2^-level.
-struct SquarePlace {
-  std::int32_t level = 0;
-  std::uint32_t column = 0;
-  std::uint32_t row = 0;
-
-  /// Quadrant q = qx + 2 qy.
-  SquarePlace quadrant(unsigned q) const {
-    return {level + 1, 2 * column + (q & 1U), 2 * row + (q >> 1U)};
-  }
-};
 
 /// Many squares as one factor sees them: square i has the average mean[slot[i]], and
 /// detail[slot[i]] is the factor's own handle on what lies below; no_node says that it is constant

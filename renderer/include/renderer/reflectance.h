@@ -13,12 +13,14 @@
 
 namespace haarlight::renderer {
 
+struct Hit;
+
 /// A surface point as samplers see it; all directions in one frame.
 struct ShadingPoint {
-  Vec3 n;                                        ///< unit normal, on the viewer's side
-  Vec3 wo;                                       ///< unit direction to the viewer, n·wo > 0
-  ReflectionFrame reflection;                    ///< of n and wo
-  const wavelet::Occlusion* occlusion = nullptr; ///< of the point, where anything may be in the way
+  Vec3 n;                     ///< unit normal, on the viewer's side
+  Vec3 wo;                    ///< unit direction to the viewer, n·wo > 0
+  ReflectionFrame reflection; ///< of n and wo
+  const Hit* hit = nullptr;   ///< the point in the world, where anything may be in its light's way
 };
 
 ShadingPoint shading_point(const Vec3& n, const Vec3& wo);

@@ -26,7 +26,8 @@ enum class SamplerKind : std::uint8_t {
   Ris,
   TwoStage,
   Wais,
-  Pps
+  Pps,
+  ProductVisibility
 };
 
 /// What a sampler wants made when a scene is loaded; bits.

@@ -47,5 +47,6 @@ MakeFactory make_ris_factory;
 MakeFactory make_two_stage_factory;
 MakeFactory make_wais_factory;
 MakeFactory make_pps_factory;
+MakeFactory make_product_visibility_factory;
 
 } // namespace haarlight::renderer

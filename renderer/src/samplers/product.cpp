@@ -4,7 +4,9 @@
 // a square of the product that counts as hidden lets through then weighs no more than its
 // reflectance.
 
+#include "../visibility/hit_occlusion.h"
 #include "kinds.h"
+#include "product_options.h"
 #include "product_tree_sampler.h"
 
 #include <wavelet/adaptive_product.h>
@@ -17,20 +19,23 @@ namespace {
 
 class ProductSampler : public ProductTreeSampler {
 public:
-  /// @param shadowed options where something may be in the way
-  ProductSampler(const Light& light, const wavelet::AdaptiveOptions& options,
-                 const wavelet::AdaptiveOptions& shadowed)
-      : m_light(light), m_builder(light.tree()), m_options(options), m_shadowed(shadowed) {}
+  ProductSampler(const LoadedScene& scene, const ProductOptions& options)
+      : m_light(scene.light()), m_builder(m_light.tree()), m_options(options),
+        m_occlusion(scene.shapes(), m_light) {}
 
   void forget() override { m_follows = false; }
 
   void prepare(const ShadingPoint& point, const Material& material) override {
     const wavelet::RotatedReflectance reflectance = material.reflectance(point);
-    const wavelet::AdaptiveOptions& options = point.occlusion != nullptr ? m_shadowed : m_options;
-    m_product = m_follows ? &m_builder.follow(reflectance, options, point.occlusion)
-                          : &m_builder.build(reflectance, options, point.occlusion);
+    const bool shadowed = point.hit != nullptr;
+    if (shadowed)
+      m_occlusion.turn_to(*point.hit);
+    const wavelet::AdaptiveOptions& options = shadowed ? m_options.shadowed : m_options.open;
+    const wavelet::Occlusion* occlusion = shadowed ? &m_occlusion : nullptr;
+    m_product = m_follows ? &m_builder.follow(reflectance, options, occlusion)
+                          : &m_builder.build(reflectance, options, occlusion);
     m_follows = true;
-    m_mixes = point.occlusion != nullptr && !m_product->empty();
+    m_mixes = shadowed && !m_product->empty();
   }
 
   void sample(const PointSource& points, std::span<DirectionSample> out) override {
@@ -70,8 +75,8 @@ private:
 
   const Light& m_light;
   wavelet::AdaptiveProduct m_builder;
-  wavelet::AdaptiveOptions m_options;
-  wavelet::AdaptiveOptions m_shadowed;
+  ProductOptions m_options;
+  detail::HitOcclusion m_occlusion;
   bool m_follows = false;
   bool m_mixes = false;
   std::vector<Vec2> m_points;
@@ -84,22 +89,17 @@ constexpr float shadow_ratio = 3;
 
 class ProductFactory : public SamplerFactory {
 public:
-  ProductFactory(const Light& light, const wavelet::AdaptiveOptions& options)
-      : m_light(light), m_options(options) {}
+  ProductFactory(const LoadedScene& scene, const SamplerOptions& options)
+      : m_scene(scene), m_options(options) {}
 
   std::unique_ptr<Sampler> make(std::size_t count) const override {
-    wavelet::AdaptiveOptions open = m_options;
-    wavelet::AdaptiveOptions shadowed = m_options;
-    if (m_options.variance_bound == 0) {
-      open.variance_bound = default_variance_bound(count);
-      shadowed.variance_bound = shadow_ratio * open.variance_bound;
-    }
-    return std::make_unique<ProductSampler>(m_light, open, shadowed);
+    return std::make_unique<ProductSampler>(m_scene,
+                                            product_options(m_options, count, shadow_ratio));
   }
 
 private:
-  const Light& m_light;
-  wavelet::AdaptiveOptions m_options;
+  const LoadedScene& m_scene;
+  SamplerOptions m_options;
 };
 
 } // namespace
@@ -110,7 +110,7 @@ float default_variance_bound(std::size_t count) {
 
 std::unique_ptr<SamplerFactory> make_product_factory(const LoadedScene& scene,
                                                      const SamplerOptions& options) {
-  return std::make_unique<ProductFactory>(scene.light(), options.product);
+  return std::make_unique<ProductFactory>(scene, options);
 }
 
 } // namespace haarlight::renderer

@@ -113,6 +113,12 @@ constexpr std::array entries = {
                                 "(after Clarberg and Akenine-Möller 2008)",
                      .needs = NeedsLightTree | NeedsMaterialTrees},
           .make = make_pps_factory},
+    Entry{.traits = {.kind = SamplerKind::ProductVisibility,
+                     .name = "product-visibility",
+                     .summary = "as product, times what is seen past the scene's objects",
+                     .needs = NeedsLightTree | NeedsMaterialTrees,
+                     .follows_product = true},
+          .make = make_product_visibility_factory},
 };
 
 constexpr auto all_traits = [] {

@@ -1,16 +1,16 @@
 #pragma once
-// Curves over logarithmic axes, as SVG.
+// Curves as SVG; what is up is logarithmic.
 
-#include <bench/look.h>
+#include <html/look.h>
 
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace haarlight::bench {
+namespace haarlight::html {
 
 struct Series {
-  std::string label; ///< written at the curve's end
+  std::string label; ///< written at the curve's end, if not empty
   Look look;
   std::vector<std::pair<double, double>>
       points; ///< joined in this order; what is not positive is left out
@@ -26,4 +26,9 @@ struct PlotText {
 std::string log_plot(const std::vector<Series>& series, const PlotText& text,
                      const std::vector<double>& ticks = {});
 
-} // namespace haarlight::bench
+/// The same over a linear axis of angles.
+/// @param ticks degrees, at least one; the axis spans them
+std::string angle_plot(const std::vector<Series>& series, const PlotText& text,
+                       const std::vector<double>& ticks);
+
+} // namespace haarlight::html

@@ -1,8 +1,6 @@
-#include <bench/cells.h>
+#include <html/cells.h>
 
-#include <bench/look.h>
-
-namespace haarlight::bench {
+namespace haarlight::html {
 
 std::string figure_cell(const std::string& html) { return "<td class=\"n\">" + html + "</td>"; }
 std::string text_cell(const std::string& html) { return "<td>" + html + "</td>"; }
@@ -14,13 +12,4 @@ std::string group_head(const std::string& html, int columns) {
   return "<th class=\"group\" colspan=\"" + std::to_string(columns) + "\">" + html + "</th>";
 }
 
-std::string sampler_html(const std::string& name) {
-  const auto kind = renderer::sampler_from_name(name);
-  if (!kind)
-    return escaped(name);
-  const bool biased = renderer::traits(*kind).claim == renderer::SamplerClaim::Biased;
-  return swatch_svg(look_of(*kind)) + escaped(name) +
-         (biased ? " <span class=\"tag\">biased</span>" : "");
-}
-
-} // namespace haarlight::bench
+} // namespace haarlight::html

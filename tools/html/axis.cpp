@@ -1,11 +1,15 @@
-#include <bench/axis.h>
+#include <html/axis.h>
 
-#include <bench/look.h>
+#include <html/text.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace haarlight::bench {
+namespace haarlight::html {
+
+bool Axis::can_show(double value) const {
+  return std::isfinite(value) && (value > 0 || scale == AxisScale::Linear);
+}
 
 void Axis::take(double value) {
   low = std::min(low, value);
@@ -13,14 +17,20 @@ void Axis::take(double value) {
 }
 
 void Axis::finish() {
-  if (high <= 0)
+  if (high < low)
     low = high = 1;
+  if (scale == AxisScale::Linear) {
+    high += high > low ? 0 : 1;
+    return;
+  }
   const double room = std::max(1.12, std::pow(high / low, 0.04));
   low /= room;
   high *= room;
 }
 
 double Axis::place(double value) const {
+  if (scale == AxisScale::Linear)
+    return from + (to - from) * (value - low) / (high - low);
   return from + (to - from) * std::log(value / low) / std::log(high / low);
 }
 
@@ -36,8 +46,10 @@ std::vector<double> Axis::ticks() const {
   return result;
 }
 
-std::string tick_text(double value) {
-  if (value >= 1 && value < 1e6)
+std::string Axis::tick_text(double value) const {
+  if (scale == AxisScale::Linear)
+    return std::to_string(std::lround(value)).append("°");
+  if (value >= 1 && value < 99999)
     return std::to_string(std::lround(value));
   if (value >= 0.0099 && value < 1)
     return number_html(value);
@@ -49,4 +61,4 @@ std::string tick_text(double value) {
       .append("</tspan>");
 }
 
-} // namespace haarlight::bench
+} // namespace haarlight::html

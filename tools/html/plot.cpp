@@ -1,11 +1,13 @@
-#include <bench/plot.h>
+#include <html/plot.h>
 
-#include <bench/axis.h>
+#include <html/axis.h>
+#include <html/svg.h>
+#include <html/text.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace haarlight::bench {
+namespace haarlight::html {
 namespace {
 
 constexpr double width = 560;
@@ -16,29 +18,15 @@ constexpr double top = 34;
 constexpr double bottom = 330;
 constexpr double label_height = 13;
 
-std::string text_at(double x, double y, const std::string& attributes, const std::string& text) {
-  return "<text x=\"" + fixed(x) + "\" y=\"" + fixed(y) + "\" " + attributes + ">" + text +
-         "</text>\n";
-}
-
-std::string point(char command, double x, double y) {
-  return std::string(1, command).append(fixed(x)).append(" ").append(fixed(y));
-}
-
-std::string line(double x0, double y0, double x1, double y1, const std::string& colour) {
-  return "<path d=\"" + point('M', x0, y0) + point('L', x1, y1) + "\" stroke=\"" + colour +
-         "\"/>\n";
-}
-
 std::string grid(const Axis& x, const Axis& y, const std::vector<double>& ticks) {
   std::string svg;
   for (const double value : ticks) {
     svg += line(x.place(value), top, x.place(value), bottom, "#e4e4e4");
-    svg += text_at(x.place(value), bottom + 16, "text-anchor=\"middle\"", tick_text(value));
+    svg += text_at(x.place(value), bottom + 16, "text-anchor=\"middle\"", x.tick_text(value));
   }
   for (const double value : y.ticks()) {
     svg += line(left, y.place(value), right, y.place(value), "#e4e4e4");
-    svg += text_at(left - 7, y.place(value) + 4, "text-anchor=\"end\"", tick_text(value));
+    svg += text_at(left - 7, y.place(value) + 4, "text-anchor=\"end\"", y.tick_text(value));
   }
   return svg + line(left, bottom, right, bottom, "#777") + line(left, top, left, bottom, "#777");
 }
@@ -59,7 +47,7 @@ std::string curve(const Series& series, const Axis& x, const Axis& y) {
 void spread(std::vector<double>& heights) {
   for (std::size_t i = 1; i < heights.size(); ++i)
     heights[i] = std::max(heights[i], heights[i - 1] + label_height);
-  double limit = bottom + 4;
+  double limit = bottom - 6;
   for (std::size_t i = heights.size(); i-- > 0; limit -= label_height)
     heights[i] = std::min(heights[i], limit);
 }
@@ -75,6 +63,8 @@ std::string labels(std::vector<Series> series, const Axis& x, const Axis& y) {
   spread(heights);
   std::string svg;
   for (std::size_t i = 0; i < series.size(); ++i) {
+    if (series[i].label.empty())
+      continue;
     const auto& [end_x, end_y] = series[i].points.back();
     svg += "<path d=\"" + point('M', x.place(end_x) + 6, y.place(end_y)) +
            point('L', right + 12, heights[i]) + "\" stroke=\"" + series[i].look.colour +
@@ -85,15 +75,14 @@ std::string labels(std::vector<Series> series, const Axis& x, const Axis& y) {
   return svg;
 }
 
-} // namespace
-
-std::string log_plot(const std::vector<Series>& series, const PlotText& text,
-                     const std::vector<double>& ticks) {
+std::string drawn(const std::vector<Series>& series, const PlotText& text,
+                  const std::vector<double>& ticks, AxisScale scale) {
   std::vector<Series> shown;
-  Axis x{.from = left, .to = right};
+  Axis x{.scale = scale, .from = left, .to = right};
   Axis y{.from = bottom, .to = top};
   for (Series one : series) {
-    std::erase_if(one.points, [](const auto& p) { return !(p.first > 0) || !(p.second > 0); });
+    std::erase_if(one.points,
+                  [&](const auto& p) { return !x.can_show(p.first) || !y.can_show(p.second); });
     for (const auto& [a, b] : one.points) {
       x.take(a);
       y.take(b);
@@ -103,8 +92,7 @@ std::string log_plot(const std::vector<Series>& series, const PlotText& text,
   }
   x.finish();
   y.finish();
-  std::string svg = "<svg viewBox=\"0 0 " + fixed(width) + " " + fixed(height) +
-                    "\" role=\"img\" fill=\"#333\">\n";
+  std::string svg = svg_head(width, height);
   svg += text_at(left, 18, "font-weight=\"600\" font-size=\"14\"", escaped(text.title));
   svg += text_at((left + right) / 2, height - 12, "text-anchor=\"middle\"", escaped(text.x));
   svg += "<text transform=\"translate(14 " + fixed((top + bottom) / 2) +
@@ -115,4 +103,16 @@ std::string log_plot(const std::vector<Series>& series, const PlotText& text,
   return svg + labels(shown, x, y) + "</svg>\n";
 }
 
-} // namespace haarlight::bench
+} // namespace
+
+std::string log_plot(const std::vector<Series>& series, const PlotText& text,
+                     const std::vector<double>& ticks) {
+  return drawn(series, text, ticks, AxisScale::Logarithmic);
+}
+
+std::string angle_plot(const std::vector<Series>& series, const PlotText& text,
+                       const std::vector<double>& ticks) {
+  return drawn(series, text, ticks, AxisScale::Linear);
+}
+
+} // namespace haarlight::html

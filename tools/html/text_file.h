@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace haarlight::bench {
+namespace haarlight::html {
 
 /// @throws Error(Output)
 inline void write_text(const std::string& path, const std::string& text) {
@@ -14,4 +14,4 @@ inline void write_text(const std::string& path, const std::string& text) {
   file.commit();
 }
 
-} // namespace haarlight::bench
+} // namespace haarlight::html

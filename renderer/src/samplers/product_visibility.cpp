@@ -1,0 +1,76 @@
+// The product of light, reflectance and the visibilities of all objects: the world-frame product
+// whose squares, from the coarsest on, count for what geometry tells is seen of them, so that what
+// is hidden costs nothing and shadow edges are followed to fine squares.
+
+#include "../visibility/seen_squares.h"
+#include "kinds.h"
+#include "product_options.h"
+#include "product_tree_sampler.h"
+
+#include <wavelet/adaptive_product.h>
+
+#include <algorithm>
+
+namespace haarlight::renderer {
+namespace {
+
+class ProductVisibilitySampler : public ProductTreeSampler {
+public:
+  ProductVisibilitySampler(const LoadedScene& scene, const ProductOptions& options)
+      : m_builder(scene.light().tree()), m_options(options),
+        m_visibility(scene.shapes(), scene.light()) {}
+
+  void forget() override { m_follows = false; }
+
+  void prepare(const ShadingPoint& point, const Material& material) override {
+    const wavelet::RotatedReflectance reflectance = material.reflectance(point);
+    if (point.hit != nullptr) {
+      m_visibility.turn_to(*point.hit);
+      m_product = &m_builder.build(reflectance, m_options.shadowed, m_visibility);
+    } else {
+      m_product = m_follows ? &m_builder.follow(reflectance, m_options.open)
+                            : &m_builder.build(reflectance, m_options.open);
+    }
+    m_follows = true;
+  }
+
+private:
+  wavelet::AdaptiveProduct m_builder;
+  ProductOptions m_options;
+  detail::SeenSquares m_visibility;
+  bool m_follows = false;
+};
+
+/// Of the default bound where something may be in the way to that in the open. Leaves cost several
+/// times as much there, as what is seen of them has to be found.
+constexpr float shadow_ratio = 6;
+
+/// Leaves there at most for each sample, so that intricate shadows do not cost many times what the
+/// samples do.
+constexpr std::size_t leaves_per_sample = 25;
+
+class ProductVisibilityFactory : public SamplerFactory {
+public:
+  ProductVisibilityFactory(const LoadedScene& scene, const SamplerOptions& options)
+      : m_scene(scene), m_options(options) {}
+
+  std::unique_ptr<Sampler> make(std::size_t count) const override {
+    ProductOptions options = product_options(m_options, count, shadow_ratio);
+    int& most = options.shadowed.max_leaves;
+    most = static_cast<int>(std::min(static_cast<std::size_t>(most), leaves_per_sample * count));
+    return std::make_unique<ProductVisibilitySampler>(m_scene, options);
+  }
+
+private:
+  const LoadedScene& m_scene;
+  SamplerOptions m_options;
+};
+
+} // namespace
+
+std::unique_ptr<SamplerFactory> make_product_visibility_factory(const LoadedScene& scene,
+                                                                const SamplerOptions& options) {
+  return std::make_unique<ProductVisibilityFactory>(scene, options);
+}
+
+} // namespace haarlight::renderer

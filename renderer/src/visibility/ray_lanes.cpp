@@ -1,0 +1,143 @@
+#include "ray_lanes.h"
+
+#include <array>
+#include <limits>
+
+namespace haarlight::renderer::detail {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Keeps divisors from 0.
+constexpr float tiny = 1e-20F;
+
+/// The values of t that four lines spend inside something.
+struct Spans {
+  Float4 enter;
+  Float4 exit;
+};
+
+Spans both(const Spans& a, const Spans& b) {
+  return {larger(a.enter, b.enter), smaller(a.exit, b.exit)};
+}
+
+Int4 ahead(const Spans& spans) { return (spans.enter < spans.exit) & (spans.exit > Float4{}); }
+
+/// Where origin + t·direction lies within [−half, half] along one axis.
+Spans slab(float origin, Float4 direction, float half) {
+  const Float4 divisor =
+      select(absolute(direction) > broadcast<Float4>(tiny), direction, broadcast<Float4>(tiny));
+  const Float4 a = (-half - origin) / divisor;
+  const Float4 b = (half - origin) / divisor;
+  return {smaller(a, b), larger(a, b)};
+}
+
+/// a t² + 2 b t + c.
+struct Quadratic {
+  Float4 a, b, c;
+
+  /// Where it is below 0, for a ≥ 0; nowhere if it has no roots.
+  Spans below() const {
+    const Float4 square = b * b - a * c;
+    const Float4 root = square_root(larger(square, Float4{}));
+    const Int4 real = square > Float4{};
+    return {select(real, (-b - root) / (a + tiny), broadcast<Float4>(infinity)),
+            select(real, (-b + root) / (a + tiny), broadcast<Float4>(-infinity))};
+  }
+};
+
+/// x² + y² − 1 along the rays.
+Quadratic unit_tube(const Vec3& o, const Lanes3& d) {
+  return {d.x * d.x + d.y * d.y, o.x() * d.x + o.y() * d.y,
+          broadcast<Float4>(o.x() * o.x() + o.y() * o.y() - 1)};
+}
+
+Quadratic unit_sphere(const Vec3& o, const Lanes3& d) {
+  const Quadratic tube = unit_tube(o, d);
+  return {tube.a + d.z * d.z, tube.b + o.z() * d.z, tube.c + o.z() * o.z()};
+}
+
+Float4 squared_distance_to_axis(const Vec3& o, const Lanes3& d, Float4 t) {
+  const Float4 x = o.x() + t * d.x;
+  const Float4 y = o.y() + t * d.y;
+  return x * x + y * y;
+}
+
+Int4 meet_disk(const Vec3& o, const Lanes3& d) {
+  const Float4 t = -o.z() / d.z;
+  return (t > Float4{}) & (squared_distance_to_axis(o, d, t) < broadcast<Float4>(1));
+}
+
+Int4 meet_box(const Vec3& o, const Lanes3& d) {
+  return ahead(both(both(slab(o.x(), d.x, 1), slab(o.y(), d.y, 1)), slab(o.z(), d.z, 1)));
+}
+
+Int4 meet_cylinder(const Vec3& o, const Lanes3& d) {
+  return ahead(both(unit_tube(o, d).below(), slab(o.z(), d.z, 1)));
+}
+
+/// The base, or either root of the mantle's x² + y² − (1 − z)².
+Int4 meet_cone(const Vec3& o, const Lanes3& d) {
+  const float below_tip = 1 - o.z();
+  const Float4 a = d.x * d.x + d.y * d.y - d.z * d.z;
+  const Float4 b = o.x() * d.x + o.y() * d.y + below_tip * d.z;
+  const float c = o.x() * o.x() + o.y() * o.y() - below_tip * below_tip;
+  const Float4 square = b * b - a * c;
+  const Float4 root = square_root(larger(square, Float4{}));
+  Int4 result = meet_disk(o, d);
+  for (const Float4 t : {(-b - root) / a, (-b + root) / a}) {
+    const Float4 z = o.z() + t * d.z;
+    result |= (square > Float4{}) & (t > Float4{}) & (z > Float4{}) & (z < broadcast<Float4>(1));
+  }
+  return result;
+}
+
+/// Where rays are closest to the point of the torus' circle that is closest to where they are at t.
+Float4 closer(const Vec3& o, const Lanes3& d, Float4 t) {
+  const Float4 x = o.x() + t * d.x;
+  const Float4 y = o.y() + t * d.y;
+  const Float4 scale = 1 / (square_root(x * x + y * y) + tiny);
+  const Float4 along = (x * scale - o.x()) * d.x + (y * scale - o.y()) * d.y - o.z() * d.z;
+  return along / (d.x * d.x + d.y * d.y + d.z * d.z);
+}
+
+/// A torus is met, if at all, where the ray is next to its circle: found in turns from where the
+/// ray is above or below that, and from where it passes through its plane.
+Int4 meet_torus(float tube, const Vec3& o, const Lanes3& d) {
+  const Quadratic circle = unit_tube(o, d);
+  const Float4 nearest = -circle.b / (circle.a + tiny);
+  const Float4 off =
+      square_root(larger(circle.b * circle.b - circle.a * circle.c, Float4{})) / (circle.a + tiny);
+  Int4 result = {};
+  for (Float4 t : {nearest - off, nearest + off, -o.z() / d.z}) {
+    for (int turn = 0; turn < 3; ++turn)
+      t = closer(o, d, t);
+    const Float4 beside = square_root(squared_distance_to_axis(o, d, t)) - 1;
+    const Float4 z = o.z() + t * d.z;
+    result |= (t > Float4{}) & (beside * beside + z * z < broadcast<Float4>(tube * tube));
+  }
+  return result;
+}
+
+} // namespace
+
+Int4 rays_meet(const Solid& solid, const Vec3& origin, const Lanes3& directions) {
+  switch (solid.kind) {
+  case SolidKind::Disk:
+    return meet_disk(origin, directions);
+  case SolidKind::Box:
+    return meet_box(origin, directions);
+  case SolidKind::Cylinder:
+    return meet_cylinder(origin, directions);
+  case SolidKind::Cone:
+    return meet_cone(origin, directions);
+  case SolidKind::Torus:
+    return meet_torus(static_cast<float>(solid.tube), origin, directions);
+  case SolidKind::WorldSphere:
+  case SolidKind::Sphere:
+    break;
+  }
+  return ahead(unit_sphere(origin, directions).below());
+}
+
+} // namespace haarlight::renderer::detail

@@ -1,0 +1,13 @@
+#pragma once
+// Pictures within a page.
+
+#include <image/png.h>
+
+#include <string>
+
+namespace haarlight::html {
+
+/// The picture's PNG file as a data URI. @throws Error(Output)
+std::string png_uri(const image::Picture& picture, const image::PngOptions& options = {});
+
+} // namespace haarlight::html

@@ -1,0 +1,125 @@
+#include <info/error_curve.h>
+
+#include <wavelet/parallel.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <mutex>
+
+namespace haarlight::info {
+namespace {
+
+using wavelet::MapPlace;
+using wavelet::TreeSet;
+using wavelet::TreeView;
+
+constexpr unsigned mantissa_bits = 23;
+constexpr unsigned bin_shift = 17; ///< 64 bins for each doubling
+
+/// Energies by size. Those of a bin share their exponent, so that their sum is a sum of integers,
+/// the same in any order.
+class Histogram {
+public:
+  /// @param energy finite, ≥ 0
+  void add(float energy) {
+    const auto bits = std::bit_cast<std::uint32_t>(energy);
+    if (bits == 0)
+      return;
+    const std::uint32_t implicit = bits >> mantissa_bits != 0 ? 1U << mantissa_bits : 0U;
+    Bin& bin = m_bins[bits >> bin_shift];
+    ++bin.count;
+    bin.mantissas += (bits & ((1U << mantissa_bits) - 1U)) + implicit;
+  }
+
+  void add(const Histogram& other) {
+    for (std::size_t i = 0; i < m_bins.size(); ++i) {
+      m_bins[i].count += other.m_bins[i].count;
+      m_bins[i].mantissas += other.m_bins[i].mantissas;
+    }
+  }
+
+  /// Bins, by rising energy.
+  std::size_t size() const { return m_bins.size(); }
+  std::uint64_t count(std::size_t bin) const { return m_bins[bin].count; }
+  double energy(std::size_t bin) const {
+    const int exponent = std::max(1, static_cast<int>(bin >> (mantissa_bits - bin_shift)));
+    return std::ldexp(static_cast<double>(m_bins[bin].mantissas), exponent - 150);
+  }
+
+private:
+  struct Bin {
+    std::uint64_t count = 0;
+    std::uint64_t mantissas = 0;
+  };
+  std::vector<Bin> m_bins = std::vector<Bin>(std::size_t{1} << (31 - bin_shift));
+};
+
+float weighted_square(Float4 c) { return wavelet::lane_sum(c * c * wavelet::luminance_lanes); }
+
+Histogram histogram_of(const TreeSet& set, MapPlace place) {
+  const TreeView& tree = set.tree(place.column, place.row);
+  Histogram histogram;
+  std::uint32_t node = 0;
+  for (int level = 0; level < set.levels(); ++level)
+    for (auto left = set.level_nodes(place.column, place.row, level); left > 0; --left) {
+      const wavelet::Details details = tree.details(node++);
+      for (const Float4 d : {details.d1, details.d2, details.d3})
+        histogram.add(std::ldexp(weighted_square(d), -2 * level));
+    }
+  return histogram;
+}
+
+Histogram histogram_of(const TreeSet& set, const std::vector<MapPlace>& trees) {
+  Histogram sum;
+  std::mutex mutex;
+  parallel_for(trees.size(), [&](std::size_t i) {
+    const Histogram one = histogram_of(set, trees[i]);
+    const std::scoped_lock lock(mutex);
+    sum.add(one);
+  });
+  return sum;
+}
+
+double energy_of_means(const TreeSet& set, const std::vector<MapPlace>& trees) {
+  double energy = 0;
+  for (const MapPlace& place : trees)
+    energy += static_cast<double>(
+        weighted_square(wavelet::to_lanes(set.tree(place.column, place.row).mean)));
+  return energy;
+}
+
+/// What is left at every bin if it and all above are kept, absolute; by falling error.
+std::vector<KeptPoint> all_points(const Histogram& histogram) {
+  std::vector<KeptPoint> points;
+  double rest = 0;
+  std::uint64_t total = 0;
+  for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+    if (histogram.count(bin) == 0)
+      continue;
+    points.push_back({total, rest});
+    rest += histogram.energy(bin);
+    total += histogram.count(bin);
+  }
+  for (KeptPoint& point : points)
+    point.kept = total - point.kept;
+  std::reverse(points.begin(), points.end());
+  return points;
+}
+
+} // namespace
+
+std::vector<KeptPoint> error_curve(const TreeSet& set, const std::vector<MapPlace>& trees) {
+  const Histogram histogram = histogram_of(set, trees);
+  double energy = energy_of_means(set, trees);
+  for (std::size_t bin = 0; bin < histogram.size(); ++bin)
+    energy += histogram.energy(bin);
+  std::vector<KeptPoint> curve;
+  for (const KeptPoint& point : all_points(histogram))
+    if (curve.empty() || point.error == 0 ||
+        static_cast<double>(point.kept) > 1.12 * static_cast<double>(curve.back().kept))
+      curve.push_back({point.kept, std::sqrt(point.error / energy)});
+  return curve;
+}
+
+} // namespace haarlight::info
