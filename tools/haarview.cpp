@@ -110,7 +110,7 @@ int view_scene(const tool::Tool& app, const Options& options) {
   check(app, options);
   if (app.given("--threads"))
     setenv("LP_NUM_THREADS", std::to_string(thread_count()).c_str(), 1); // llvmpipe's own
-  if (options.frame.empty() && options.page.empty())
+  if (shows_window(options))
     return view_in_window(app, options);
   const ViewScene scene(options.input);
   const PageOptions shown = shown_of(scene, options);
@@ -130,9 +130,8 @@ int view_scene(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(
-      argc, argv, "haarview",
-      "Shows trees by GL, in a window, a picture or a page for a browser: a fragment shader "
-      "reconstructs them at the level each pixel needs.",
-      declare, view_scene);
+  return tool::run_program(argc, argv, "haarview",
+                           "Shows trees by GL in a window, a picture or a page: a fragment shader "
+                           "reconstructs them at the level each pixel needs.",
+                           declare, view_scene);
 }

@@ -42,10 +42,10 @@ void declare(tool::Tool& app, Options& options) {
             "Scene of spheres and planes, or a set of a BRDF's trees by θ_r, shown on a sphere");
   app.text(options.frame, "--frame", "OUT.exr|.png",
            "Picture to write, in place of a window to show; a .png is tone-mapped");
-  app.text(options.page, "--export", "PAGE.html",
-           "Page to write, in place of a window, that shows the same in a browser with WebGL 2, "
-           "all in one file; with "
-           "--compare, its #check compares as well");
+  app.text(
+      options.page, "--export", "PAGE.html",
+      "Page to write, in place of a window, that shows the same in a browser with WebGL 2, all "
+      "in one file; with --compare, its #check compares as well");
   app.text(options.size, "--size", "WxH", "Size in pixels, in place of the scene's or 256x256");
   app.value(options.level, "--level",
             "Level of the trees that all pixels take, 13 being every tree's finest; without, each "
@@ -77,7 +77,7 @@ void check(const tool::Tool& app, const Options& options) {
   for (const char* other : {"--light-level", "--tolerance"})
     if (lamp && app.given(other))
       throw tool::UsageError(std::string(other).append(": is of --environment"));
-  check_window(app, options.window, options.frame.empty() && options.page.empty());
+  check_window(app, options.window, shows_window(options));
   for (const std::string& output : {options.frame, options.page})
     if (!output.empty())
       const OutputFile trial(output);

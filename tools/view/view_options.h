@@ -42,7 +42,12 @@ Lamp lamp_of(const Options& options);
 
 /// Squares along a side of the light as 2^N: fewer in a page, which would be large.
 inline int light_level_of(const Options& options) {
-  return options.light_level.value_or(options.frame.empty() && !options.page.empty() ? 8 : 10);
+  return options.light_level.value_or(options.frame.empty() ? 8 : 10);
+}
+
+/// Unless a file is to be written.
+inline bool shows_window(const Options& options) {
+  return options.frame.empty() && options.page.empty();
 }
 
 inline Lighting lighting_of(const Options& options) {
