@@ -5,6 +5,7 @@
 
 #include <view/comparison.h>
 #include <view/egl_context.h>
+#include <view/page.h>
 #include <view/view_options.h>
 #include <view/window_run.h>
 
@@ -12,8 +13,11 @@
 #include <image/png.h>
 
 #include <renderer/light.h>
+#include <wavelet/file_hash.h>
 #include <wavelet/input_file.h>
+#include <wavelet/output_file.h>
 #include <wavelet/parallel.h>
+#include <wavelet/provenance.h>
 #include <wavelet/tree_set.h>
 
 #include <cstdlib>
@@ -38,58 +42,87 @@ renderer::SceneDescription description_of(const ViewScene& scene, const Options&
   return result;
 }
 
-void set_light(const renderer::LightDescription& description, int level, FrameDrawer& drawer) {
-  const renderer::Light light(description, probe::Lookup::Nearest);
-  drawer.set_light(pack_light(light.map(1 << level)));
-  Eigen::Matrix3f to_world;
+/// What is shown, ready to be drawn or to become a page.
+PageOptions shown_of(const ViewScene& scene, const Options& options) {
+  PageOptions shown;
+  shown.film = description_of(scene, options);
+  shown.lamp = lamp_of(options);
+  shown.level = options.level.value_or(automatic_level);
+  shown.tolerance = options.tolerance;
+  shown.exposure = options.exposure;
+  shown.reference = reference_of(scene, shown.film, options);
+  if (lighting_of(options) == Lighting::Lamp)
+    return shown;
+  const renderer::Light light(shown.film.light, probe::Lookup::Nearest);
+  shown.light = pack_light(light.map(1 << light_level_of(options)));
   for (int axis = 0; axis < 3; ++axis)
-    to_world.col(axis) = light.to_world(Vec3::Unit(axis));
-  drawer.turn_light(to_world);
-  drawer.show_background(description.background);
+    shown.to_world.col(axis) = light.to_world(Vec3::Unit(axis));
+  return shown;
 }
 
-void write(const Options& options, const image::Picture& picture) {
+void set(const PageOptions& shown, FrameDrawer& drawer) {
+  drawer.set_lamp(shown.lamp);
+  drawer.set_tolerance(shown.tolerance);
+  drawer.turn_light(shown.to_world);
+  drawer.show_background(shown.film.light.background);
+  if (shown.light)
+    drawer.set_light(*shown.light);
+}
+
+void write_frame(const Options& options, const image::Picture& picture) {
   if (tool::has_extension(options.frame, ".png"))
     image::write_png(options.frame, picture, {options.exposure, image::ToneMap::Filmic});
   else
     image::write_exr(options.frame, picture);
 }
 
+void draw_frame(const ViewScene& scene, const PageOptions& shown, const Options& options,
+                tool::Report& report) {
+  const EglContext context;
+  FrameDrawer drawer(scene, shown.film.width, shown.film.height);
+  set(shown, drawer);
+  const Drawing drawing = {drawer, lighting_of(options), options.repeat};
+  drawer.draw(drawing.lighting, shown.level); // compiles the shaders as well
+  const DrawnFrame frame = drawer.read();
+  image::Picture picture(shown.film.width, shown.film.height);
+  picture.rgb = frame.rgb;
+  write_frame(options, picture);
+  report.add("renderer", context.renderer())
+      .add("texture_bytes", drawer.texture_bytes())
+      .add("accesses_per_pixel", frame.accesses)
+      .add("ms_per_frame", drawing.time(shown.level), "ms");
+  if (!shown.reference.empty())
+    add_comparison(drawing, shown.level, finest_level(scene, options), shown.reference, report);
+}
+
+void write_page(const ViewScene& scene, PageOptions shown, const Options& options,
+                tool::Report& report) {
+  shown.title = base_name(options.input);
+  shown.provenance = version_text() + ", " + shown.title + " " + file_hash(options.input);
+  const std::string page = view_page(scene, shown);
+  OutputFile file(options.page);
+  file.write(page.data(), page.size());
+  file.commit();
+  report.add("page", options.page).add("page_bytes", page.size());
+}
+
 int view_scene(const tool::Tool& app, const Options& options) {
   check(app, options);
   if (app.given("--threads"))
     setenv("LP_NUM_THREADS", std::to_string(thread_count()).c_str(), 1); // llvmpipe's own
-  if (options.frame.empty())
+  if (shows_window(options))
     return view_in_window(app, options);
-  const Lamp lamp = lamp_of(options);
-  const Lighting lighting = lighting_of(options);
   const ViewScene scene(options.input);
-  const renderer::SceneDescription film = description_of(scene, options);
-  const std::vector<float> reference = reference_of(scene, film, options);
-  const EglContext context;
-  FrameDrawer drawer(scene, film.width, film.height);
-  drawer.set_lamp(lamp);
-  if (lighting == Lighting::Environment)
-    set_light(film.light, options.light_level, drawer);
-  drawer.set_tolerance(options.tolerance);
-  const int level = options.level.value_or(automatic_level);
-  drawer.draw(lighting, level); // compiles the shaders as well
-  const DrawnFrame frame = drawer.read();
-  image::Picture picture(film.width, film.height);
-  picture.rgb = frame.rgb;
-  write(options, picture);
-  const Drawing drawing = {drawer, lighting, options.repeat};
+  const PageOptions shown = shown_of(scene, options);
   tool::Report report;
-  report.add("renderer", context.renderer())
-      .add("width", film.width, "px")
-      .add("height", film.height, "px")
-      .add("level", options.level ? std::to_string(level) : std::string("as needed"))
-      .add("trees", scene.trees().size())
-      .add("texture_bytes", drawer.texture_bytes())
-      .add("accesses_per_pixel", frame.accesses)
-      .add("ms_per_frame", drawing.time(level), "ms");
-  if (!reference.empty())
-    add_comparison(drawing, level, finest_level(scene, options), reference, report);
+  report.add("width", shown.film.width, "px")
+      .add("height", shown.film.height, "px")
+      .add("level", options.level ? std::to_string(*options.level) : std::string("as needed"))
+      .add("trees", scene.trees().size());
+  if (!options.page.empty())
+    write_page(scene, shown, options, report);
+  if (!options.frame.empty())
+    draw_frame(scene, shown, options, report);
   app.print(report);
   return tool::exit_ok;
 }
@@ -97,9 +130,8 @@ int view_scene(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(
-      argc, argv, "haarview",
-      "Shows trees by GL, in a window or a picture: a fragment shader reconstructs "
-      "them at the level each pixel needs.",
-      declare, view_scene);
+  return tool::run_program(argc, argv, "haarview",
+                           "Shows trees by GL in a window, a picture or a page: a fragment shader "
+                           "reconstructs them at the level each pixel needs.",
+                           declare, view_scene);
 }

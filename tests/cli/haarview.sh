@@ -72,6 +72,31 @@ mapfile -t error < <(errors)
 number "${error[0]} <= 0.02"
 expect 0 haarview brdf.haar --size 32x32 --probe sky.hdr --repeat 1 --frame trees.exr
 
+# the page: by what chromium draws of it, it agrees with the CPU as well
+export=(--compare --repeat 1 --json -q)
+expect 0 haarview brdf.haar --size 64x64 --light-direction 1,2,3 "${export[@]}" --export lamp.html
+expect 0 haarview scene.json --size 48x32 --environment --reference integral.exr --export environment.html
+expect 0 haarview brdf.haar --size 64x64 --light-direction 1,2,3 "${export[@]}" --export again.html
+same lamp.html again.html
+grep -qE '(src|href)=|https?:' lamp.html && fail "the page needs more than itself"
+# deviation PAGE#CHECK: of the picture in a browser.
+deviation() {
+  timeout 120 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
+    --user-data-dir="$log/chromium" --dump-dom "file://$PWD/$1" 2>/dev/null >"$log/dom"
+  grep -q 'gl_error 0<' "$log/dom" || fail "$1: $(grep -o '<pre id="result">.*' "$log/dom")"
+  sed -n 's/.*id="result">check.* relative_rms \([0-9.e-]*\).*/\1/p' "$log/dom"
+}
+if command -v chromium >/dev/null; then
+  fine=$(deviation 'lamp.html#check,13')
+  coarse=$(deviation 'lamp.html#check,4')
+  number "${fine:-1} > 0 && ${fine:-1} <= 0.01 && ${coarse:-0} > 0.1"
+  fine=$(deviation 'environment.html#check')
+  coarse=$(deviation 'environment.html#check,2')
+  number "${fine:-1} > 0 && ${fine:-1} <= 0.02 && ${coarse:-0} > 0.1"
+else
+  echo "skipped: pages are not looked at, since there is no chromium, which install_packages.sh leaves out for its size"
+fi
+
 # what is far away takes fewer accesses
 near=$("$bin/haarview" brdf.haar --size 256x256 -q --frame frame.exr | sed -n 's/accesses per pixel *//p')
 distant=$("$bin/haarview" brdf.haar --size 16x16 -q --frame frame.exr | sed -n 's/accesses per pixel *//p')
@@ -107,8 +132,9 @@ sed -i "s/\"floor\": {/$columns&/" many.json
 expect 4 haarview many.json --frame picture.exr
 says "GL: what is to be shown takes a texture of"
 refuses_bad_input picture.exr haarview @ --frame picture.exr
+refuses_bad_output .html haarview brdf.haar --size 64x64 --export @
 refuses_bad_output .exr haarview brdf.haar --size 64x64 --frame @
 __EGL_VENDOR_LIBRARY_FILENAMES=/nowhere expect 4 haarview brdf.haar --frame picture.exr
 says "EGL: "
-leaves brdf.binary brdf.haar small.haar scene.json cut.haar disk.json many.json frame.exr frame.png integral.exr sky.haar sky.hdr trees.exr once.exr twice.exr
+leaves brdf.binary brdf.haar small.haar scene.json cut.haar again.html disk.json environment.html lamp.html many.json frame.exr frame.png integral.exr sky.haar sky.hdr trees.exr once.exr twice.exr
 finish

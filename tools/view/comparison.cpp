@@ -50,7 +50,7 @@ void add_comparison(const Drawing& drawing, int level, int finest,
 }
 
 int finest_level(const ViewScene& scene, const Options& options) {
-  return lighting_of(options) == Lighting::Lamp ? scene.levels() : options.light_level;
+  return lighting_of(options) == Lighting::Lamp ? scene.levels() : light_level_of(options);
 }
 
 } // namespace haarlight::view

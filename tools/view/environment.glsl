@@ -9,7 +9,7 @@ uniform mat3 to_world; // from the light's frame
 uniform float tolerance; // squares are split while they leave more of the integral in doubt
 uniform bool background;
 
-const int full_level = 6;
+const int full_level = 5;
 const float even_spread = 1.4472025;
 
 vec4 light_square(int level, ivec2 square) {
@@ -22,6 +22,22 @@ vec3 light_around(int level, vec3 direction) {
   int side = 1 << level;
   ivec2 square = ivec2(sphere_to_square(direction * to_world) * float(side));
   return light_square(level, min(square, ivec2(side - 1))).rgb;
+}
+
+/// The finest squares, blended.
+vec3 light_towards(vec3 direction) {
+  int last = (1 << light_levels) - 1;
+  vec2 place = sphere_to_square(direction * to_world) * float(last + 1) - 0.5;
+  ivec2 first = ivec2(floor(place));
+  vec2 part = place - vec2(first);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 corner = ivec2(i & 1, i >> 1);
+    vec2 weight = mix(1.0 - part, part, vec2(corner));
+    ivec2 square = clamp(first + corner, ivec2(0), ivec2(last));
+    sum += weight.x * weight.y * light_square(light_levels, square).rgb;
+  }
+  return sum;
 }
 
 /// The reflectance's average over a square of `level` about a point, and its deviation within;
@@ -126,5 +142,5 @@ void main() {
   if (see(hit, direction))
     colour = vec4(reflected(hit, -direction), accesses);
   else
-    colour = vec4(background ? light_around(light_levels, direction) : vec3(0.0), 0.0);
+    colour = vec4(background ? light_towards(direction) : vec3(0.0), 0.0);
 }

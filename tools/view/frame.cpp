@@ -29,14 +29,41 @@ FrameDrawer::FrameDrawer(const ViewScene& scene, int width, int height)
       m_show(covering_vertex_shader(), show_fragment_shader()),
       m_camera(scene.description().camera) {
   resize(width, height);
-  add_trees(scene);
-  add_lobes(scene);
-  add_objects(scene);
+  put(pack_scene(scene));
+  put(pack_reflectances(scene));
   set_lamp({});
   turn_light(Eigen::Matrix3f::Identity());
   show_background(true);
   set_tolerance(environment_tolerance);
 }
+
+void FrameDrawer::put(const PackedScene& packed) {
+  for (const PackedTexture& texture : packed.textures)
+    put(texture);
+  for (const auto& [name, values] : packed.floats)
+    set(name, values);
+  for (const auto& [name, value] : packed.integers)
+    set(name, value);
+}
+
+void FrameDrawer::put(const PackedTexture& packed) {
+  for (Named& old : m_textures)
+    if (old.name == packed.sampler) {
+      old.texture = Texture(packed);
+      old.bytes = packed.bytes.size();
+      return;
+    }
+  m_textures.push_back({packed.sampler, Texture(packed), packed.bytes.size()});
+}
+
+std::size_t FrameDrawer::texture_bytes() const {
+  std::size_t bytes = 0;
+  for (const Named& named : m_textures)
+    bytes += named.bytes;
+  return bytes;
+}
+
+void FrameDrawer::set_light(const PackedLight& light) { put(pack_light_textures(light)); }
 
 void FrameDrawer::turn_light(const Eigen::Matrix3f& to_world) const { set("to_world", to_world); }
 

@@ -2,7 +2,7 @@
 // Pictures of a scene under a lamp, drawn by GL, for whatever owns the context.
 
 #include <view/gl_objects.h>
-#include <view/packed_light.h>
+#include <view/packed_scene.h>
 #include <view/view_scene.h>
 
 #include <memory>
@@ -70,11 +70,9 @@ public:
   std::size_t texture_bytes() const;
 
 private:
-  /// Adds a texture, or replaces the one of that name.
-  void put(const std::string& name, Texture texture, std::size_t bytes);
-  void add_trees(const ViewScene& scene);
-  void add_lobes(const ViewScene& scene);
-  void add_objects(const ViewScene& scene);
+  /// Adds textures and uniforms, or replaces those of the same names.
+  void put(const PackedScene& packed);
+  void put(const PackedTexture& packed);
   template <class Value>
   void set(const std::string& name, const Value& value) const {
     m_lamp.set(name, value);

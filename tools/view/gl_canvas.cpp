@@ -34,7 +34,7 @@ void Cover::draw_to(unsigned framebuffer, const Area& area) const {
 
 Canvas::Canvas(int width, int height)
     : m_width(checked_side(width)), m_height(checked_side(height)),
-      m_texture(Texel::Rgba32F, width, height, nullptr) {
+      m_texture({"picture", Texel::Rgba32F, width, height, 0, false, {}}) {
   glGenFramebuffers(1, &m_frame);
   glBindFramebuffer(GL_FRAMEBUFFER, m_frame);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, m_texture.id(), 0);

@@ -2,27 +2,17 @@
 // What a picture takes of GL: textures, programs, an image to draw to. All need a current context,
 // of OpenGL ES 3.0 or OpenGL 3.3, and are gone with their object.
 
-#include <Eigen/Core>
-
-#include <cstdint>
 #include <string>
 #include <vector>
+#include <view/packed_scene.h>
 
 namespace haarlight::view {
-
-enum class Texel { R32F, Rgba32F, Rgba16F, R32Ui };
 
 /// A texture, 2D or 3D.
 class Texture {
 public:
-  /// 2D, read by texelFetch() only. @param texels row by row, as Texel says, or null
   /// @throws Error(Output) if it is larger than GL takes
-  Texture(Texel texel, int width, int height, const void* texels);
-  /// 2D with all mip levels, read by texelFetch() only. @param levels of texels, the finest first,
-  /// square and each half as large as the one before; the last is one texel. @throws as above
-  Texture(Texel texel, const std::vector<const void*>& levels);
-  /// 3D of Rgba16F, filtered. @throws Error(Output) as above
-  Texture(int width, int height, int depth, const std::uint16_t* halves);
+  explicit Texture(const PackedTexture& packed);
   ~Texture();
   Texture(Texture&& other) noexcept;
   Texture& operator=(Texture&& other) noexcept;

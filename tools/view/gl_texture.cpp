@@ -14,13 +14,14 @@ struct Format {
   GLint internal;
   GLenum format;
   GLenum type;
+  std::size_t bytes;
 };
 
 Format format_of(Texel texel) {
-  constexpr std::array<Format, 4> formats = {{{GL_R32F, GL_RED, GL_FLOAT},
-                                              {GL_RGBA32F, GL_RGBA, GL_FLOAT},
-                                              {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT},
-                                              {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}}};
+  constexpr std::array<Format, 4> formats = {{{GL_R32F, GL_RED, GL_FLOAT, 4},
+                                              {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
+                                              {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8},
+                                              {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4}}};
   return formats[static_cast<std::size_t>(texel)];
 }
 
@@ -32,12 +33,13 @@ void check_side(GLenum limit, int side) {
                                  " texels a side; " + std::to_string(most) + " are possible");
 }
 
-unsigned make_texture(GLenum target, GLint filter) {
+unsigned make_texture(GLenum target, const PackedTexture& packed) {
+  const GLint filter = packed.depth > 0 ? GL_LINEAR : GL_NEAREST;
   unsigned id = 0;
   glActiveTexture(GL_TEXTURE15); // the last that every GL has, so that no sampler loses its texture
   glGenTextures(1, &id);
   glBindTexture(target, id);
-  glTexParameteri(target, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(target, GL_TEXTURE_MIN_FILTER, packed.mips ? GL_NEAREST_MIPMAP_NEAREST : filter);
   glTexParameteri(target, GL_TEXTURE_MAG_FILTER, filter);
   for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
     glTexParameteri(target, wrap, GL_CLAMP_TO_EDGE);
@@ -45,35 +47,41 @@ unsigned make_texture(GLenum target, GLint filter) {
   return id;
 }
 
-} // namespace
-
-Texture::Texture(Texel texel, int width, int height, const void* texels) : m_target(GL_TEXTURE_2D) {
-  check_side(GL_MAX_TEXTURE_SIZE, width);
-  check_side(GL_MAX_TEXTURE_SIZE, height);
-  m_id = make_texture(m_target, GL_NEAREST);
-  const Format format = format_of(texel);
-  glTexImage2D(m_target, 0, format.internal, width, height, 0, format.format, format.type, texels);
+const std::byte* bytes_of(const PackedTexture& packed) {
+  return packed.bytes.empty() ? nullptr : packed.bytes.data();
 }
 
-Texture::Texture(Texel texel, const std::vector<const void*>& levels) : m_target(GL_TEXTURE_2D) {
-  const int finest = static_cast<int>(levels.size()) - 1;
-  check_side(GL_MAX_TEXTURE_SIZE, 1 << finest);
-  m_id = make_texture(m_target, GL_NEAREST);
-  glTexParameteri(m_target, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
-  const Format format = format_of(texel);
-  for (int mip = 0; mip <= finest; ++mip) {
-    const int side = 1 << (finest - mip);
-    glTexImage2D(m_target, mip, format.internal, side, side, 0, format.format, format.type,
-                 levels[static_cast<std::size_t>(mip)]);
+void fill_3d(const PackedTexture& packed) {
+  const Format format = format_of(packed.texel);
+  glTexImage3D(GL_TEXTURE_3D, 0, format.internal, packed.width, packed.height, packed.depth, 0,
+               format.format, format.type, bytes_of(packed));
+}
+
+void fill_2d(const PackedTexture& packed) {
+  const Format format = format_of(packed.texel);
+  const std::byte* bytes = bytes_of(packed);
+  for (int mip = 0; mip == 0 || (packed.mips && packed.width >> mip > 0); ++mip) {
+    const int width = packed.width >> mip;
+    const int height = packed.height >> mip;
+    glTexImage2D(GL_TEXTURE_2D, mip, format.internal, width, height, 0, format.format, format.type,
+                 bytes);
+    if (bytes != nullptr)
+      bytes += format.bytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
 }
 
-Texture::Texture(int width, int height, int depth, const std::uint16_t* halves)
-    : m_target(GL_TEXTURE_3D) {
-  for (const int side : {width, height, depth})
-    check_side(GL_MAX_3D_TEXTURE_SIZE, side);
-  m_id = make_texture(m_target, GL_LINEAR);
-  glTexImage3D(m_target, 0, GL_RGBA16F, width, height, depth, 0, GL_RGBA, GL_HALF_FLOAT, halves);
+} // namespace
+
+Texture::Texture(const PackedTexture& packed)
+    : m_target(packed.depth > 0 ? GL_TEXTURE_3D : GL_TEXTURE_2D) {
+  const GLenum limit = packed.depth > 0 ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE;
+  for (const int side : {packed.width, packed.height, packed.depth})
+    check_side(limit, side);
+  m_id = make_texture(m_target, packed);
+  if (packed.depth > 0)
+    fill_3d(packed);
+  else
+    fill_2d(packed);
 }
 
 Texture::~Texture() {

@@ -15,7 +15,7 @@
 
 namespace haarlight::view {
 
-inline constexpr int full_level = 6;
+inline constexpr int full_level = 5;
 inline constexpr int window_side = 1 << full_level;
 inline constexpr int lobe_width = window_side + 2;
 /// Finer detail than this of a reflectance is averaged.

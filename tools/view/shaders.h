@@ -1,6 +1,6 @@
 #pragma once
-// The .glsl files of this folder, in what GLSL ES 3.00 and GLSL 3.30 have in common, without the
-// line that says which of them it is.
+// The files of this folder that are not C++. Shaders are in what GLSL ES 3.00 and GLSL 3.30 have in
+// common, without the line that says which of them it is.
 
 #include <string>
 
@@ -17,5 +17,9 @@ std::string environment_fragment_shader();
 
 /// show.glsl and what it rests on.
 std::string show_fragment_shader();
+
+/// page.html, with marks where the others go, and page.js.
+std::string page_html();
+std::string page_script();
 
 } // namespace haarlight::view

@@ -26,7 +26,9 @@ void declare_environment(tool::Tool& app, Options& options) {
   app.text(options.probe, "--probe", "FILE",
            "Probe image, or light's trees, in place of the scene's; implies --environment");
   app.value(options.light_level, "--light-level",
-            "Of --environment: the light is kept as 2^N squares a side", 2, 11);
+            "Of --environment: the light is kept as 2^N squares a side; without, 10, and 8 for an "
+            "--export alone",
+            2, 11);
   app.value(options.tolerance, "--tolerance",
             "Of --environment: squares are split while each leaves more than this share of its "
             "pixel in doubt, by estimate",
@@ -40,6 +42,10 @@ void declare(tool::Tool& app, Options& options) {
             "Scene of spheres and planes, or a set of a BRDF's trees by θ_r, shown on a sphere");
   app.text(options.frame, "--frame", "OUT.exr|.png",
            "Picture to write, in place of a window to show; a .png is tone-mapped");
+  app.text(
+      options.page, "--export", "PAGE.html",
+      "Page to write, in place of a window, that shows the same in a browser with WebGL 2, all "
+      "in one file; with --compare, its #check compares as well");
   app.text(options.size, "--size", "WxH", "Size in pixels, in place of the scene's or 256x256");
   app.value(options.level, "--level",
             "Level of the trees that all pixels take, 13 being every tree's finest; without, each "
@@ -60,7 +66,8 @@ void declare(tool::Tool& app, Options& options) {
 }
 
 void check(const tool::Tool& app, const Options& options) {
-  tool::check_picture_path(options.frame, "--frame");
+  if (!options.frame.empty())
+    tool::check_picture_path(options.frame, "--frame");
   if (app.given("--light-position") && app.given("--light-direction"))
     throw tool::UsageError("--light-direction and --light-position: only one can be given");
   const bool lamp = lighting_of(options) == Lighting::Lamp;
@@ -70,9 +77,10 @@ void check(const tool::Tool& app, const Options& options) {
   for (const char* other : {"--light-level", "--tolerance"})
     if (lamp && app.given(other))
       throw tool::UsageError(std::string(other).append(": is of --environment"));
-  check_window(app, options.window, options.frame.empty());
-  if (!options.frame.empty())
-    const OutputFile trial(options.frame);
+  check_window(app, options.window, shows_window(options));
+  for (const std::string& output : {options.frame, options.page})
+    if (!output.empty())
+      const OutputFile trial(output);
 }
 
 Lamp lamp_of(const Options& options) {

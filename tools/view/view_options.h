@@ -14,6 +14,7 @@ namespace haarlight::view {
 struct Options {
   std::string input;
   std::string frame;
+  std::string page;
   std::string size;
   std::optional<int> level;
   std::vector<double> direction = {0.4, 0.6, 0.7};
@@ -21,7 +22,7 @@ struct Options {
   std::vector<double> irradiance = {3, 3, 3};
   bool environment = false;
   std::string probe;
-  int light_level = 10;
+  std::optional<int> light_level;
   float tolerance = environment_tolerance;
   double exposure = 0;
   int repeat = 3;
@@ -38,6 +39,16 @@ void check(const tool::Tool& app, const Options& options);
 
 /// @throws UsageError if its direction has no length
 Lamp lamp_of(const Options& options);
+
+/// Squares along a side of the light as 2^N: fewer in a page, which would be large.
+inline int light_level_of(const Options& options) {
+  return options.light_level.value_or(options.frame.empty() ? 8 : 10);
+}
+
+/// Unless a file is to be written.
+inline bool shows_window(const Options& options) {
+  return options.frame.empty() && options.page.empty();
+}
 
 inline Lighting lighting_of(const Options& options) {
   return options.environment || !options.probe.empty() ? Lighting::Environment : Lighting::Lamp;

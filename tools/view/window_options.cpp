@@ -30,10 +30,11 @@ void check_window(const tool::Tool& app, const WindowOptions& options, bool wind
   for (const char* name : {"--against", "--material", "--watch", "--no-panel", "--screenshot",
                            "--frames", "--turn", "--reloads"})
     if (!window && app.given(name))
-      throw tool::UsageError(std::string(name).append(": is of the window, not of --frame"));
+      throw tool::UsageError(
+          std::string(name).append(": is of the window, not of --frame or --export"));
   for (const char* name : {"--repeat", "--compare", "--reference"})
     if (window && app.given(name))
-      throw tool::UsageError(std::string(name).append(": is of --frame"));
+      throw tool::UsageError(std::string(name).append(": is of --frame and --export"));
   for (const char* name : {"--screenshot", "--turn", "--reloads"})
     if (app.given(name) && !options.input.script.frames)
       throw tool::UsageError(std::string(name).append(": needs --frames as well"));

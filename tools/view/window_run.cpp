@@ -20,7 +20,7 @@ WindowInput input_of(const Options& options) {
   input.lamp = lamp_of(options);
   input.lighting = lighting_of(options);
   input.probe = options.probe;
-  input.light_level = options.light_level;
+  input.light_level = options.light_level.value_or(input.light_level);
   input.tolerance = options.tolerance;
   input.exposure = options.exposure;
   input.script.screenshot = !options.window.screenshot.empty();
