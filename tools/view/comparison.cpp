@@ -11,6 +11,7 @@ namespace haarlight::view {
 
 double Drawing::time(int level) const {
   std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(repeat));
   for (int i = 0; i < repeat; ++i)
     times.push_back(draw(level));
   std::nth_element(times.begin(), times.begin() + repeat / 2, times.end());

@@ -35,6 +35,8 @@ vec3 shade(Hit hit, vec3 wo) {
 void main() {
   Hit hit;
   vec3 direction;
-  colour.rgb = see(hit, direction) ? shade(hit, -direction) : vec3(0.0);
-  colour.a = accesses;
+  colour = vec4(0.0);
+  int hits = see(hit, direction) ? 1 : 0; // a loop, since llvmpipe runs branches that no pixel takes
+  for (int i = 0; i < hits; ++i)
+    colour = vec4(shade(hit, -direction), accesses);
 }

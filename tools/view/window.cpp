@@ -32,12 +32,12 @@ public:
       : m_input(input), m_note(note),
         m_screen(input.width, input.height, "haarview: " + base_name(input.scene)),
         m_exhibits(input), m_orbit(m_exhibits.scene().camera), m_settings(settings_of(input)),
-        m_shown(m_settings), m_pace(scripted()) {
+        m_shown(m_settings), m_pace(scripted()), m_contents(contents_of(m_exhibits.choices())) {
     m_screen.pace(!scripted());
     m_exhibits.choose(m_settings);
-    m_contents.materials = names_of(m_exhibits.choices().materials);
-    m_contents.others = names_of(m_exhibits.choices().others);
-    m_contents.lights = names_of(m_exhibits.choices().lights);
+    m_screen.begin(0); // controls show in the turn after the one that lays them out
+    show_controls();
+    m_screen.end(nullptr);
   }
 
   WindowReport run() {

@@ -85,6 +85,22 @@ void add_lights(const std::string& neighbour, WindowChoices& choices) {
       choices.lights.push_back(light_of_file(path));
 }
 
+std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
+  std::vector<std::string> names(subjects.size());
+  std::transform(subjects.begin(), subjects.end(), names.begin(),
+                 [](const Subject& subject) { return subject.name(); });
+  names.front() = names.front().empty() ? "nothing" : names.front();
+  return names;
+}
+
+std::vector<std::string> names_of(const std::vector<renderer::LightDescription>& lights) {
+  std::vector<std::string> names(lights.size());
+  std::transform(lights.begin(), lights.end(), names.begin(),
+                 [](const auto& light) { return base_name(file_of(light)); });
+  names.front() = "lamp";
+  return names;
+}
+
 } // namespace
 
 WindowChoices choices_of(const WindowInput& input, const renderer::LightDescription& light) {
@@ -102,20 +118,12 @@ WindowChoices choices_of(const WindowInput& input, const renderer::LightDescript
   return choices;
 }
 
-std::vector<std::string> names_of(const std::vector<Subject>& subjects) {
-  std::vector<std::string> names(subjects.size());
-  std::transform(subjects.begin(), subjects.end(), names.begin(),
-                 [](const Subject& subject) { return subject.name(); });
-  names.front() = names.front().empty() ? "nothing" : names.front();
-  return names;
-}
-
-std::vector<std::string> names_of(const std::vector<renderer::LightDescription>& lights) {
-  std::vector<std::string> names(lights.size());
-  std::transform(lights.begin(), lights.end(), names.begin(),
-                 [](const auto& light) { return base_name(file_of(light)); });
-  names.front() = "lamp";
-  return names;
+PanelContents contents_of(const WindowChoices& choices) {
+  PanelContents contents;
+  contents.materials = names_of(choices.materials);
+  contents.others = names_of(choices.others);
+  contents.lights = names_of(choices.lights);
+  return contents;
 }
 
 } // namespace haarlight::view

@@ -2,11 +2,11 @@
 // What a window offers to show.
 
 #include <view/window.h>
+#include <view/window_panel.h>
 #include <view/window_side.h>
 
 #include <renderer/scene.h>
 
-#include <string>
 #include <vector>
 
 namespace haarlight::view {
@@ -24,7 +24,7 @@ struct WindowChoices {
 /// @throws Error(Input) if a file that is given cannot be read
 WindowChoices choices_of(const WindowInput& input, const renderer::LightDescription& light);
 
-std::vector<std::string> names_of(const std::vector<Subject>& subjects);
-std::vector<std::string> names_of(const std::vector<renderer::LightDescription>& lights);
+/// Their names; nothing else is filled in.
+PanelContents contents_of(const WindowChoices& choices);
 
 } // namespace haarlight::view

@@ -44,7 +44,7 @@ void tell_figures(const std::vector<SideFigures>& sides) {
     return;
   ImGui::TableSetupColumn("file", ImGuiTableColumnFlags_WidthStretch);
   for (const char* name : {"reads/px", "ms", "MiB"})
-    ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 56);
   ImGui::TableHeadersRow();
   for (const SideFigures& side : sides) {
     ImGui::TableNextColumn();

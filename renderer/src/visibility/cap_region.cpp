@@ -26,19 +26,6 @@ Cap Cap::around_ball(const Eigen::Vector3d& centre, double radius) {
   return cap;
 }
 
-RegionPart Cap::classify(const SquareCap& bounds) const {
-  const float along = axis.dot(bounds.centre);
-  const float even = cosine * bounds.cosine;
-  const float odd = sine * bounds.sine;
-  if (chord_squared >= 4)
-    return RegionPart::Inside;
-  if (cosine <= bounds.cosine && along >= even + odd)
-    return RegionPart::Inside;
-  if (cosine >= -bounds.cosine && along <= even - odd)
-    return RegionPart::Outside;
-  return RegionPart::Partial;
-}
-
 RegionPart CapRegion::classify(const SquarePlace& square) const {
   const RegionPart part = m_cap.classify(wavelet::square_cap(square));
   if (part == RegionPart::Partial)

@@ -20,7 +20,18 @@ struct Cap {
   static Cap around_ball(const Eigen::Vector3d& centre, double radius);
 
   /// Where the squares of a cap's bounds lie.
-  wavelet::RegionPart classify(const wavelet::SquareCap& bounds) const;
+  wavelet::RegionPart classify(const wavelet::SquareCap& bounds) const {
+    const float along = axis.dot(bounds.centre);
+    const float even = cosine * bounds.cosine;
+    const float odd = sine * bounds.sine;
+    if (chord_squared >= 4)
+      return wavelet::RegionPart::Inside;
+    if (cosine <= bounds.cosine && along >= even + odd)
+      return wavelet::RegionPart::Inside;
+    if (cosine >= -bounds.cosine && along <= even - odd)
+      return wavelet::RegionPart::Outside;
+    return wavelet::RegionPart::Partial;
+  }
 };
 
 /// 1 within the cap and 0 outside, or the reverse.
