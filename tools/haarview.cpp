@@ -1,16 +1,14 @@
 // haarview: shows stored trees, reconstructed in a fragment shader.
 #include <render/film_output.h>
 #include <support/program.h>
-#include <support/words.h>
 
 #include <view/comparison.h>
 #include <view/egl_context.h>
+#include <view/frame_output.h>
 #include <view/page.h>
+#include <view/transfer_frame.h>
 #include <view/view_options.h>
 #include <view/window_run.h>
-
-#include <image/image_exr.h>
-#include <image/png.h>
 
 #include <renderer/light.h>
 #include <wavelet/file_hash.h>
@@ -69,30 +67,25 @@ void set(const PageOptions& shown, FrameDrawer& drawer) {
     drawer.set_light(*shown.light);
 }
 
-void write_frame(const Options& options, const image::Picture& picture) {
-  if (tool::has_extension(options.frame, ".png"))
-    image::write_png(options.frame, picture, {options.exposure, image::ToneMap::Filmic});
-  else
-    image::write_exr(options.frame, picture);
-}
-
 void draw_frame(const ViewScene& scene, const PageOptions& shown, const Options& options,
                 tool::Report& report) {
   const EglContext context;
   FrameDrawer drawer(scene, shown.film.width, shown.film.height);
   set(shown, drawer);
-  const Drawing drawing = {drawer, lighting_of(options), options.repeat};
-  drawer.draw(drawing.lighting, shown.level); // compiles the shaders as well
-  const DrawnFrame frame = drawer.read();
-  image::Picture picture(shown.film.width, shown.film.height);
-  picture.rgb = frame.rgb;
-  write_frame(options, picture);
+  const Lighting lighting = lighting_of(options);
+  const Drawing drawing = {[&](int level) { return drawer.draw(lighting, level); },
+                           [&] { return drawer.read(); }, options.repeat};
+  drawing.draw(shown.level); // compiles the shaders as well
+  const DrawnFrame frame = drawing.read();
+  write_frame(options, frame, shown.film.width, shown.film.height);
   report.add("renderer", context.renderer())
       .add("texture_bytes", drawer.texture_bytes())
       .add("accesses_per_pixel", frame.accesses)
       .add("ms_per_frame", drawing.time(shown.level), "ms");
-  if (!shown.reference.empty())
-    add_comparison(drawing, shown.level, finest_level(scene, options), shown.reference, report);
+  if (shown.reference.empty())
+    return;
+  drawer.show_background(false);
+  add_comparison(drawing, shown.level, finest_level(scene, options), shown.reference, report);
 }
 
 void write_page(const ViewScene& scene, PageOptions shown, const Options& options,
@@ -110,6 +103,9 @@ int view_scene(const tool::Tool& app, const Options& options) {
   check(app, options);
   if (app.given("--threads"))
     setenv("LP_NUM_THREADS", std::to_string(thread_count()).c_str(), 1); // llvmpipe's own
+  if (is_transfer(options.input))
+    return view_transfer(app, options);
+  check_scene(app);
   if (shows_window(options))
     return view_in_window(app, options);
   const ViewScene scene(options.input);

@@ -27,7 +27,7 @@ std::string scene_path(const ChangeOptions& options, const Transfer& transfer) {
 /// What an option changes, and whether that is what varies.
 void require_fit(const Tool& app, const Transfer& transfer, const char* option, bool fits,
                  const char* wanted) {
-  if (app.given(option) && !fits)
+  if (app.knows(option) && app.given(option) && !fits)
     throw UsageError(std::string(option) + ": " + transfer.path() + " lets " +
                      transfer.varying_text() + " vary; this takes one built with --vary " + wanted);
 }
@@ -38,11 +38,9 @@ void check_fit(const Tool& app, const Transfer& transfer, Varying varying) {
   require_fit(app, transfer, "--light", light, "light");
   require_fit(app, transfer, "--brdf", varying == Varying::Material, "material:NAME");
   for (const char* option : {"--rotate", "--rotate-from", "--rotate-to"})
-    if (app.knows(option))
-      require_fit(app, transfer, option, light, "light");
+    require_fit(app, transfer, option, light, "light");
   for (const char* option : {"--move", "--move-from", "--move-to"})
-    if (app.knows(option))
-      require_fit(app, transfer, option, moves, "object:NAME or view");
+    require_fit(app, transfer, option, moves, "object:NAME or view");
 }
 
 /// The scene with the files that take the place of its own.
@@ -84,12 +82,11 @@ void declare_change(Tool& app, ChangeOptions& options) {
            "[the scene's]");
 }
 
-RelightSession::RelightSession(const Tool& app, const ChangeOptions& options)
+RelightInput::RelightInput(const Tool& app, const ChangeOptions& options)
     : m_transfer(options.transfer), m_scene(load_scene(scene_path(options, m_transfer))),
       m_variation(m_transfer.variation(m_scene)) {
   check_fit(app, m_transfer, m_variation.varying);
   replace_sources(options, m_variation, m_scene);
-  m_relighter = make_relighter(m_transfer, m_scene, m_variation);
 }
 
 void write_relit_exr(const std::string& path, const Film& film, const Transfer& transfer,

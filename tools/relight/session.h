@@ -20,21 +20,37 @@ struct ChangeOptions {
 
 void declare_change(Tool& app, ChangeOptions& options);
 
-/// A transfer, its scene, and what makes pictures of them.
-class RelightSession {
+/// A transfer and its scene, with the files that take the place of the scene's own.
+class RelightInput {
 public:
   /// @throws UsageError if what is asked for does not vary in the transfer
   /// @throws Error(Input)
-  RelightSession(const Tool& app, const ChangeOptions& options);
+  RelightInput(const Tool& app, const ChangeOptions& options);
 
-  renderer::Film make(const renderer::Change& change) { return m_relighter->make(change); }
   const renderer::Transfer& transfer() const { return m_transfer; }
+  const renderer::SceneDescription& scene() const { return m_scene; }
   const renderer::Variation& variation() const { return m_variation; }
 
 private:
   renderer::Transfer m_transfer;
   renderer::SceneDescription m_scene;
   renderer::Variation m_variation;
+};
+
+/// The same with what makes pictures of them.
+class RelightSession {
+public:
+  /// @throws as RelightInput
+  RelightSession(const Tool& app, const ChangeOptions& options)
+      : m_input(app, options),
+        m_relighter(make_relighter(m_input.transfer(), m_input.scene(), m_input.variation())) {}
+
+  renderer::Film make(const renderer::Change& change) { return m_relighter->make(change); }
+  const renderer::Transfer& transfer() const { return m_input.transfer(); }
+  const renderer::Variation& variation() const { return m_input.variation(); }
+
+private:
+  RelightInput m_input;
   std::unique_ptr<renderer::Relighter> m_relighter;
 };
 

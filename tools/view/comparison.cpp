@@ -13,9 +13,18 @@ double Drawing::time(int level) const {
   std::vector<double> times;
   times.reserve(static_cast<std::size_t>(repeat));
   for (int i = 0; i < repeat; ++i)
-    times.push_back(drawer.draw(lighting, level));
+    times.push_back(draw(level));
   std::nth_element(times.begin(), times.begin() + repeat / 2, times.end());
   return times[static_cast<std::size_t>(repeat / 2)];
+}
+
+std::vector<float> read_reference(const std::string& path, int width, int height) {
+  image::Picture reference = image::read_exr(path);
+  if (reference.width != width || reference.height != height)
+    throw_input_error(path, "is " + std::to_string(reference.width) + "x" +
+                                std::to_string(reference.height) +
+                                " pixels large, unlike the frame");
+  return std::move(reference.rgb);
 }
 
 std::vector<float> reference_of(const ViewScene& scene, const renderer::SceneDescription& film,
@@ -26,22 +35,16 @@ std::vector<float> reference_of(const ViewScene& scene, const renderer::SceneDes
     return lighting_of(options) == Lighting::Lamp
                ? cpu_frame(scene, lamp_of(options), film.width, film.height)
                : cpu_environment_frame(film, film.width, film.height);
-  image::Picture reference = image::read_exr(options.reference);
-  if (reference.width != film.width || reference.height != film.height)
-    throw_input_error(options.reference, "is " + std::to_string(reference.width) + "x" +
-                                             std::to_string(reference.height) +
-                                             " pixels large, unlike the frame");
-  return std::move(reference.rgb);
+  return read_reference(options.reference, film.width, film.height);
 }
 
 void add_comparison(const Drawing& drawing, int level, int finest,
                     const std::vector<float>& reference, tool::Report& report) {
-  drawing.drawer.show_background(false);
-  drawing.drawer.draw(drawing.lighting, level);
-  report.add("relative_rms", relative_rms(drawing.drawer.read().rgb, reference));
+  drawing.draw(level);
+  report.add("relative_rms", relative_rms(drawing.read().rgb, reference));
   for (int coarse = 0; coarse <= finest; ++coarse) {
     const double ms = drawing.time(coarse);
-    const DrawnFrame frame = drawing.drawer.read();
+    const DrawnFrame frame = drawing.read();
     report.row("levels")
         .add("level", coarse)
         .add("relative_rms", relative_rms(frame.rgb, reference))

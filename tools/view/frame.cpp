@@ -39,28 +39,11 @@ FrameDrawer::FrameDrawer(const ViewScene& scene, int width, int height)
 
 void FrameDrawer::put(const PackedScene& packed) {
   for (const PackedTexture& texture : packed.textures)
-    put(texture);
+    m_textures.put(texture);
   for (const auto& [name, values] : packed.floats)
     set(name, values);
   for (const auto& [name, value] : packed.integers)
     set(name, value);
-}
-
-void FrameDrawer::put(const PackedTexture& packed) {
-  for (Named& old : m_textures)
-    if (old.name == packed.sampler) {
-      old.texture = Texture(packed);
-      old.bytes = packed.bytes.size();
-      return;
-    }
-  m_textures.push_back({packed.sampler, Texture(packed), packed.bytes.size()});
-}
-
-std::size_t FrameDrawer::texture_bytes() const {
-  std::size_t bytes = 0;
-  for (const Named& named : m_textures)
-    bytes += named.bytes;
-  return bytes;
 }
 
 void FrameDrawer::set_light(const PackedLight& light) { put(pack_light_textures(light)); }
@@ -112,17 +95,15 @@ void FrameDrawer::set_lamp(const Lamp& lamp) const {
 double FrameDrawer::draw(Lighting lighting, int level) const {
   const Program& program = lighting == Lighting::Lamp ? m_lamp : m_environment;
   program.set("forced_level", level);
-  int unit = 0;
-  for (const Named& named : m_textures)
-    program.set(named.name, unit++, named.texture);
+  m_textures.bind(program);
   const auto begin = std::chrono::steady_clock::now();
   m_canvas->draw(m_cover);
   const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - begin;
   return passed.count();
 }
 
-DrawnFrame FrameDrawer::read() const {
-  const std::vector<float> rgba = m_canvas->read();
+DrawnFrame read_frame(const Canvas& canvas) {
+  const std::vector<float> rgba = canvas.read();
   DrawnFrame frame;
   frame.rgb.resize(rgba.size() / 4 * 3);
   for (std::size_t i = 0; i < frame.rgb.size(); ++i)
@@ -136,13 +117,14 @@ DrawnFrame FrameDrawer::read() const {
   return frame;
 }
 
-void FrameDrawer::show(unsigned framebuffer, const Area& area, double exposure) const {
+void show_picture(const Canvas& canvas, const Program& show, const Cover& cover,
+                  unsigned framebuffer, const Area& area, double exposure) {
   const auto number = [](int value) { return static_cast<float>(value); };
-  m_show.set("area", std::vector<float>{number(area.x), number(area.y), number(area.width),
-                                        number(area.height)});
-  m_show.set("exposure", std::vector<float>{static_cast<float>(exposure)});
-  m_show.set("picture", 0, m_canvas->texture());
-  m_cover.draw_to(framebuffer, area);
+  show.set("area", std::vector<float>{number(area.x), number(area.y), number(area.width),
+                                      number(area.height)});
+  show.set("exposure", std::vector<float>{static_cast<float>(exposure)});
+  show.set("picture", 0, canvas.texture());
+  cover.draw_to(framebuffer, area);
 }
 
 } // namespace haarlight::view

@@ -2,6 +2,7 @@
 // Pictures of a scene under a lamp, drawn by GL, for whatever owns the context.
 
 #include <view/gl_objects.h>
+#include <view/gl_textures.h>
 #include <view/packed_scene.h>
 #include <view/view_scene.h>
 
@@ -27,6 +28,13 @@ struct DrawnFrame {
   std::vector<float> rgb; ///< linear, top row first
   double accesses = 0;    ///< of textures that hold trees, on average over pixels that have any
 };
+
+/// What a shader drew that leaves the number of its accesses in alpha.
+DrawnFrame read_frame(const Canvas& canvas);
+
+/// Puts a picture, tone-mapped, into an area of a framebuffer by the program of show.glsl.
+void show_picture(const Canvas& canvas, const Program& show, const Cover& cover,
+                  unsigned framebuffer, const Area& area, double exposure);
 
 /// A scene's trees and shapes in textures, and the image they are drawn to. Needs the same current
 /// context all its life, of OpenGL ES 3.0 that draws to float images, or of OpenGL 3.3; expects
@@ -59,20 +67,21 @@ public:
   double draw(Lighting lighting, int level) const;
 
   /// The picture drawn last.
-  DrawnFrame read() const;
+  DrawnFrame read() const { return read_frame(*m_canvas); }
 
   /// Puts the picture drawn last, tone-mapped, into an area of a framebuffer.
   /// @param framebuffer GL's name for it, 0 being the window
   /// @param exposure stops
-  void show(unsigned framebuffer, const Area& area, double exposure) const;
+  void show(unsigned framebuffer, const Area& area, double exposure) const {
+    show_picture(*m_canvas, m_show, m_cover, framebuffer, area, exposure);
+  }
 
   /// Bytes of all textures.
-  std::size_t texture_bytes() const;
+  std::size_t texture_bytes() const { return m_textures.bytes(); }
 
 private:
   /// Adds textures and uniforms, or replaces those of the same names.
   void put(const PackedScene& packed);
-  void put(const PackedTexture& packed);
   template <class Value>
   void set(const std::string& name, const Value& value) const {
     m_lamp.set(name, value);
@@ -86,12 +95,7 @@ private:
   Program m_show;
   renderer::CameraDescription m_camera;
   std::optional<Canvas> m_canvas;
-  struct Named {
-    std::string name; ///< of its sampler
-    Texture texture;
-    std::size_t bytes;
-  };
-  std::vector<Named> m_textures;
+  NamedTextures m_textures;
 };
 
 } // namespace haarlight::view

@@ -18,10 +18,11 @@ struct Format {
 };
 
 Format format_of(Texel texel) {
-  constexpr std::array<Format, 4> formats = {{{GL_R32F, GL_RED, GL_FLOAT, 4},
+  constexpr std::array<Format, 5> formats = {{{GL_R32F, GL_RED, GL_FLOAT, 4},
                                               {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
                                               {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8},
-                                              {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4}}};
+                                              {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4},
+                                              {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16}}};
   return formats[static_cast<std::size_t>(texel)];
 }
 

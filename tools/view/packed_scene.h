@@ -12,7 +12,7 @@
 
 namespace haarlight::view {
 
-enum class Texel { R32F, Rgba32F, Rgba16F, R32Ui };
+enum class Texel { R32F, Rgba32F, Rgba16F, R32Ui, Rgba32Ui };
 
 struct PackedTexture {
   std::string sampler; ///< its name in the shaders

@@ -15,6 +15,9 @@ std::string lamp_fragment_shader();
 /// environment.glsl and what it rests on.
 std::string environment_fragment_shader();
 
+/// relight.glsl and what it rests on.
+std::string relight_fragment_shader();
+
 /// show.glsl and what it rests on.
 std::string show_fragment_shader();
 

@@ -39,7 +39,8 @@ void declare_environment(tool::Tool& app, Options& options) {
 
 void declare(tool::Tool& app, Options& options) {
   app.input(options.input, "SCENE.json|FILE.haar",
-            "Scene of spheres and planes, or a set of a BRDF's trees by θ_r, shown on a sphere");
+            "Scene of spheres and planes, or a set of a BRDF's trees by θ_r, shown on a sphere, or "
+            "transfer that haarrelight built with --vary light");
   app.text(options.frame, "--frame", "OUT.exr|.png",
            "Picture to write, in place of a window to show; a .png is tone-mapped");
   app.text(
@@ -62,6 +63,7 @@ void declare(tool::Tool& app, Options& options) {
   app.text(options.reference, "--reference", "REF.exr",
            "Picture to --compare with in place of that; of --environment without its background");
   declare_window(app, options.window);
+  declare_transfer(app, options.transfer);
   app.offer_json();
 }
 

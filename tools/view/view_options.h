@@ -3,6 +3,7 @@
 
 #include <support/tool.h>
 #include <view/frame.h>
+#include <view/transfer_options.h>
 #include <view/window_options.h>
 
 #include <optional>
@@ -29,6 +30,7 @@ struct Options {
   bool compare = false;
   std::string reference;
   WindowOptions window;
+  TransferOptions transfer;
 };
 
 void declare(tool::Tool& app, Options& options);

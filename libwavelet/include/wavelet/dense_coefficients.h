@@ -18,6 +18,10 @@ public:
   explicit DenseCoefficients(Map map);
 
   int levels() const { return m_levels; }
+  /// Average over the whole.
+  Rgb mean() const { return to_rgb(m_mean); }
+  /// Differences of all squares in that order, times the squares' areas.
+  std::span<const Details> details() const { return m_details; }
 
   /// ∫∫ F·T over the unit square for each tree T, per channel, by Parseval: colours times colours.
   /// @param trees of at most levels() levels

@@ -1,0 +1,109 @@
+#!/usr/bin/env bash
+# haarview of transfer: frames against haarrelight apply, level by level, and its misuse.
+source "$(dirname "$0")/lib.sh" "$1"
+
+[ -x "$bin/haarview" ] || { echo "skipped: haarview was not built"; exit 77; }
+
+"$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.05 -q -o brdf.binary >/dev/null
+"$bin/brdf2maps" brdf.binary -q --size 64 --theta 16 --conservation-tolerance 1 -o brdf.haar >/dev/null
+for light in studio sun-sky; do
+  "$bin/probesynth" --scene $light --size 64 -q -o $light.hdr >/dev/null
+done
+"$bin/probe2maps" sun-sky.hdr -q --size 64 -o sun-sky.haar >/dev/null
+cat >scene.json <<'END'
+{ "film": {"width": 24, "height": 16},
+  "camera": {"type": "perspective", "from": [0, 1.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 35},
+  "light": {"probe": "studio.hdr", "rotate": 20},
+  "materials": {"measured": {"brdf": "brdf.binary", "haar": "brdf.haar"}, "floor": {"lambert": [0.5, 0.5, 0.5]}},
+  "objects": [{"type": "sphere", "center": [-0.8, 0, 0], "radius": 1, "material": "measured"},
+              {"type": "sphere", "name": "ball", "center": [0.8, -0.5, 0.6], "radius": 0.5, "material": "floor"},
+              {"type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], "material": "floor"}] }
+END
+"$bin/haarrelight" build scene.json --vary light --resolution 64 -q -o light.haar >/dev/null
+"$bin/haarrelight" build scene.json --vary object:ball --size 8x8 -q -o object.haar >/dev/null
+
+if ! "$bin/haarview" light.haar --frame probe.exr -q >"$log/out" 2>"$log/err"; then
+  grep -q "^haarview: EGL: " "$log/err" || { cat "$log/err"; exit 1; }
+  echo "skipped: $(cat "$log/err")"
+  exit 77
+fi
+rm probe.exr
+
+# number EXPRESSION: it must hold; errors prints the relative errors: the frame's, then each level's.
+number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
+errors() { sed -n 's/.*"relative_rms": *\([0-9.e+-]*\).*/\1/p' "$log/out"; }
+
+# agrees CHANGE…: with apply of the same change within 1 %, nearer the finer the level
+agrees() {
+  "$bin/haarrelight" apply light.haar "$@" -q -o applied.exr >/dev/null
+  expect 0 haarview light.haar "$@" --reference applied.exr --repeat 1 --json --frame frame.exr
+  command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
+  mapfile -t error < <(errors)
+  [ "${#error[@]}" = 8 ] || fail "not seven levels: $(cat "$log/out")"
+  number "${error[0]} <= 0.01 && ${error[0]} == ${error[7]}"
+  number "${error[1]} > 0.1 && ${error[3]} < ${error[1]} && ${error[5]} < ${error[3]}"
+}
+agrees
+agrees --rotate 70,0,0
+cp frame.exr turned.exr
+agrees --rotate=-30,20,200 --light sun-sky.hdr
+agrees --light sun-sky.haar
+agrees
+cmp -s frame.exr turned.exr && fail "--rotate changes nothing"
+
+# --compare makes the same picture itself; that of another turn is far from the frame
+expect 0 haarview light.haar --rotate 70,0,0 --compare --repeat 1 --json --frame frame.exr
+mapfile -t error < <(errors)
+number "${error[0]} <= 0.01"
+same frame.exr turned.exr
+expect 0 haarview light.haar --rotate 160,0,0 --reference turned.exr --repeat 1 --json --frame frame.exr
+mapfile -t error < <(errors)
+number "${error[0]} > 0.1"
+
+# --level draws what the comparison says of it, with fewer accesses
+expect 0 haarview light.haar --level 2 --compare --repeat 1 --json --frame frame.exr
+mapfile -t error < <(errors)
+number "${error[0]} == ${error[3]}"
+mapfile -t accesses < <(sed -n 's/.*"accesses": *\([0-9.e+-]*\).*/\1/p' "$log/out")
+number "${accesses[0]} < ${accesses[2]} && ${accesses[2]} < ${accesses[4]} && ${accesses[4]} < ${accesses[6]}"
+
+# without background; packed, elsewhere; as a .png
+sed 's/"rotate": 20/"rotate": 20, "background": false/' scene.json >bare.json
+"$bin/haarrelight" build bare.json --resolution 64 --pack -q -o packed.haar >/dev/null
+mkdir elsewhere
+mv packed.haar elsewhere
+expect 0 haarview elsewhere/packed.haar --scene bare.json --compare --repeat 1 --json --frame frame.exr
+mapfile -t error < <(errors)
+number "${error[0]} <= 0.01"
+expect 3 haarview elsewhere/packed.haar --frame frame.exr
+expect 0 haarview light.haar --frame frame.png
+rm -r elsewhere bare.json frame.png
+
+# what goes wrong
+expect 3 haarview object.haar --frame picture.exr
+says "lets object:1 vary; this takes one built with --vary light"
+expect 2 haarview object.haar --frame picture.exr --rotate 10,0,0
+says "--vary light"
+for option in "--size 8x8" "--environment" "--probe studio.hdr" "--light-direction 0,0,1" "--export page.html"; do
+  # shellcheck disable=SC2086
+  expect 2 haarview light.haar --frame picture.exr $option
+  says "transfer takes no such option"
+done
+expect 2 haarview light.haar --frame picture.exr --level 14
+expect 2 haarview light.haar --frame picture.exr --rotate 10
+for option in "--rotate 1,2,3" "--light studio.hdr" "--scene scene.json"; do
+  # shellcheck disable=SC2086
+  expect 2 haarview brdf.haar --frame picture.exr $option
+  says "is of transfer"
+done
+expect 3 haarview light.haar --scene missing.json --frame picture.exr
+sed 's/"rotate": 20/"rotate": 21/' scene.json >other.json
+expect 3 haarview light.haar --scene other.json --frame picture.exr
+says "is not the scene"
+expect 3 haarview light.haar --light brdf.haar --frame picture.exr
+expect 3 haarview light.haar --reference missing.exr --frame picture.exr
+head -c 5000 light.haar >cut.haar
+expect 3 haarview cut.haar --scene scene.json --frame picture.exr
+rm cut.haar other.json
+leaves applied.exr brdf.binary brdf.haar frame.exr light.haar object.haar scene.json studio.hdr sun-sky.haar sun-sky.hdr turned.exr
+finish
