@@ -1,5 +1,6 @@
 #include <view/page.h>
 
+#include <html/base64.h>
 #include <view/shaders.h>
 
 #include <nlohmann/json.hpp>
@@ -15,31 +16,19 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-std::string base64(std::span<const std::byte> bytes) {
-  static constexpr char digits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8U | (i + k < bytes.size() ? std::to_integer<unsigned>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63U];
-  }
-  return text;
-}
-
 const char* name_of(Texel texel) {
   constexpr std::array<const char*, 4> names = {"R32F", "Rgba32F", "Rgba16F", "R32Ui"};
   return names[static_cast<std::size_t>(texel)];
 }
 
 Json json_of(const PackedTexture& texture) {
-  return {{"sampler", texture.sampler},    {"texel", name_of(texture.texel)},
-          {"width", texture.width},        {"height", texture.height},
-          {"depth", texture.depth},        {"mips", texture.mips},
-          {"bytes", base64(texture.bytes)}};
+  return {{"sampler", texture.sampler},
+          {"texel", name_of(texture.texel)},
+          {"width", texture.width},
+          {"height", texture.height},
+          {"depth", texture.depth},
+          {"mips", texture.mips},
+          {"bytes", html::base64(texture.bytes)}};
 }
 
 Json list(const float* values, int count) { return std::vector<float>(values, values + count); }
@@ -114,7 +103,7 @@ std::string view_page(const ViewScene& scene, const PageOptions& options) {
   }
   json["levels"] = levels;
   if (!options.reference.empty())
-    json["reference"] = base64(std::as_bytes(std::span(options.reference)));
+    json["reference"] = html::base64(std::as_bytes(std::span(options.reference)));
   std::string page = page_html();
   replace(page, "/*SCRIPT*/", page_script());
   replace(page, "/*SCENE*/", text_of(json));

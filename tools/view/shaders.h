@@ -21,7 +21,7 @@ std::string relight_fragment_shader();
 /// show.glsl and what it rests on.
 std::string show_fragment_shader();
 
-/// page.html, with marks where the others go, and page.js.
+/// page.html, with marks where the others go, and the scripts.
 std::string page_html();
 std::string page_script();
 
