@@ -22,7 +22,8 @@ $(out) $(pictures):
 	mkdir -p $@
 
 $(out)/demo.made: $(here)/demo.sh $(bin)/haarrender | $(out)
-	bash $< $(out)/demo && touch $@
+	bash $< $(out)/demo
+	touch $@
 $(pictures)/demo.png: $(out)/demo.made | $(pictures)
 	cp $(out)/demo/demo.png $@
 $(pictures)/samplers.png: $(out)/demo.made | $(pictures)
@@ -30,7 +31,8 @@ $(pictures)/samplers.png: $(out)/demo.made | $(pictures)
 
 # Its BRDFs and probes serve the scenes below.
 $(out)/gallery.made: $(here)/gallery.mk $(bin)/haarrender | $(out)
-	$(MAKE) --no-print-directory -C $(here) gallery OUT=$(out)/gallery BIN=$(bin) && touch $@
+	$(MAKE) --no-print-directory -C $(here) gallery OUT=$(out)/gallery BIN=$(bin)
+	touch $@
 $(pictures)/gallery.png: $(out)/gallery.made | $(pictures)
 	cp $(out)/gallery/gallery.png $@
 $(scene): $(here)/scenes/viewer.json $(out)/gallery.made
