@@ -52,6 +52,9 @@ public:
                  transfer.width(), transfer.height()),
         m_look(input.look), m_panel(!input.bare) {
     m_screen.pace(!scripted());
+    m_screen.begin(0); // controls show in the turn after the one that lays them out
+    show_panel();
+    m_screen.end(nullptr);
   }
 
   WindowReport run() {
@@ -116,7 +119,7 @@ private:
     const int finest = std::countr_zero(static_cast<unsigned>(m_transfer.resolution()));
     ImGui::SetNextWindowPos(ImVec2(8, 8), ImGuiCond_FirstUseEver);
     ImGui::Begin("haarview", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::Text("%.1f ms", m_times.back());
+    ImGui::Text("%.1f ms", m_times.empty() ? 0 : m_times.back());
     for (const auto& [name, axis] : {std::pair("yaw", 0U), {"pitch", 1U}, {"roll", 2U}})
       ImGui::SliderFloat(name, &m_look.rotate[axis], -180, 180, "%.0f deg");
     ImGui::SliderInt("level", &m_look.level, 0, finest);
