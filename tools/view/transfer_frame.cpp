@@ -7,10 +7,13 @@
 #include <view/transfer_drawer.h>
 #include <view/transfer_light.h>
 #include <view/transfer_packing.h>
+#include <view/transfer_window.h>
+#include <view/window_run.h>
 
 #include <wavelet/error.h>
 #include <wavelet/packed_set.h>
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 
@@ -19,6 +22,10 @@ namespace haarlight::view {
 using namespace renderer;
 
 namespace {
+
+int finest_level(const Transfer& transfer) {
+  return std::countr_zero(static_cast<unsigned>(transfer.resolution()));
+}
 
 Change change_of(const Options& options) {
   Change change;
@@ -72,7 +79,7 @@ void draw_frame(const tool::RelightInput& input, const Options& options, tool::R
       transfer.width(), transfer.height());
   const double ms_per_turn =
       turn(light, turn_of(change_of(options).rotate), options.repeat, drawer);
-  const int finest = std::countr_zero(static_cast<unsigned>(transfer.resolution()));
+  const int finest = finest_level(transfer);
   const int level = options.level.value_or(finest);
   const Drawing drawing = {[&](int l) { return drawer.draw(l); }, [&] { return drawer.read(); },
                            options.repeat};
@@ -88,6 +95,19 @@ void draw_frame(const tool::RelightInput& input, const Options& options, tool::R
     add_comparison(drawing, level, finest, reference, report);
 }
 
+int view_in_window(const tool::Tool& app, const tool::RelightInput& input, const Options& options) {
+  TransferWindowInput shown;
+  for (std::size_t i = 0; i < 3; ++i)
+    shown.look.rotate[i] = static_cast<float>(options.transfer.rotate[i]);
+  const int finest = finest_level(input.transfer());
+  shown.look.level = std::min(options.level.value_or(finest), finest);
+  shown.look.exposure = static_cast<float>(options.exposure);
+  shown.bare = options.window.input.bare;
+  shown.script = options.window.input.script;
+  shown.script.screenshot = !options.window.screenshot.empty();
+  return report_window(app, options, show_transfer(input.transfer(), input.scene(), shown));
+}
+
 } // namespace
 
 bool is_transfer(const std::string& path) {
@@ -100,9 +120,9 @@ bool is_transfer(const std::string& path) {
 
 int view_transfer(const tool::Tool& app, const Options& options) {
   check_transfer(app);
-  if (shows_window(options))
-    throw tool::UsageError("transfer is shown by --frame only");
   const tool::RelightInput input = open_input(app, options);
+  if (shows_window(options))
+    return view_in_window(app, input, options);
   tool::Report report;
   report.add("width", input.transfer().width(), "px")
       .add("height", input.transfer().height(), "px")

@@ -11,7 +11,7 @@ namespace haarlight::view {
 /// @throws Error(Input) if it cannot be read
 bool is_transfer(const std::string& path);
 
-/// Draws a transfer's picture and reports.
+/// Draws a transfer's picture, or shows it in a window, and reports.
 /// @return the exit code @throws UsageError, Error
 int view_transfer(const tool::Tool& app, const Options& options);
 

@@ -29,7 +29,7 @@ void check_transfer(const tool::Tool& app) {
   refuse(app,
          {"--size", "--light-direction", "--light-position", "--irradiance", "--environment",
           "--probe", "--light-level", "--tolerance", "--export", "--against", "--material",
-          "--watch", "--no-panel", "--reloads"},
+          "--watch", "--reloads"},
          "transfer takes no such option; --rotate and --light change its light");
 }
 

@@ -19,8 +19,10 @@ void declare_window(tool::Tool& app, WindowOptions& options) {
   app.text(options.screenshot, "--screenshot", "OUT.png",
            "Save the window as it is at the last of --frames");
   app.value(input.script.frames, "--frames", "Close the window after so many frames", 1, 1000000);
-  app.value(input.script.turn, "--turn",
-            "Degrees that the camera goes to the right over all --frames", -36000, 36000);
+  app.value(
+      input.script.turn, "--turn",
+      "Degrees that the camera goes to the right, or transfer's light turns, over all --frames",
+      -36000, 36000);
   app.value(input.script.reloads, "--reloads",
             "With --watch: files are to be rewritten so many times before --frames are counted", 0,
             1000);

@@ -52,9 +52,13 @@ int view_in_window(const tool::Tool& app, const Options& options) {
     throw tool::UsageError("--environment: there is no scene that names a light; --probe does");
   const WindowInput input = input_of(options);
   const WindowReport shown = show_window(input, [&](const std::string& news) { app.note(news); });
+  return report_window(app, options, shown);
+}
+
+int report_window(const tool::Tool& app, const Options& options, const WindowReport& shown) {
   if (shown.picture.width > 0)
     image::write_png(options.window.screenshot, shown.picture);
-  app.print(report_of(shown, input.watch));
+  app.print(report_of(shown, options.window.input.watch));
   return tool::exit_ok;
 }
 
