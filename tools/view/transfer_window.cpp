@@ -17,7 +17,6 @@
 namespace haarlight::view {
 
 using namespace renderer;
-
 namespace {
 
 constexpr double idle_seconds = 0.1; ///< that a turn takes when nothing happens
