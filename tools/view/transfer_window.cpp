@@ -17,25 +17,23 @@
 namespace haarlight::view {
 
 using namespace renderer;
-
 namespace {
 
 constexpr double idle_seconds = 0.1; ///< that a turn takes when nothing happens
 constexpr double degrees_per_pixel = 0.4;
-constexpr int least_side = 512; ///< of the window at first
-using Clock = std::chrono::steady_clock;
 
-/// Pixels of the screen along a side of one of the film's, at first.
+/// Pixels of the screen along a side of one of the film's, at first: the window has some 512.
 int enlargement(const Transfer& transfer) {
-  return std::max(1, least_side / std::max(transfer.width(), transfer.height()));
+  return std::max(1, 512 / std::max(transfer.width(), transfer.height()));
 }
 
 /// The largest part of a window that has a film's shape.
 Area fitted(const Area& window, const Transfer& film) {
   const double scale = std::min(static_cast<double>(window.width) / film.width(),
                                 static_cast<double>(window.height) / film.height());
-  const int width = std::max(1, static_cast<int>(scale * film.width()));
-  const int height = std::max(1, static_cast<int>(scale * film.height()));
+  const auto scaled = [&](int side) { return std::max(1, static_cast<int>(scale * side)); };
+  const int width = scaled(film.width());
+  const int height = scaled(film.height());
   return {(window.width - width) / 2, (window.height - height) / 2, width, height};
 }
 
@@ -64,11 +62,9 @@ public:
     m_report.width = m_screen.area().width;
     m_report.height = m_screen.area().height;
     m_report.accesses = m_drawer.read().accesses;
-    if (!m_times.empty()) {
-      const auto middle = m_times.begin() + static_cast<std::ptrdiff_t>(m_times.size() / 2);
-      std::nth_element(m_times.begin(), middle, m_times.end());
-      m_report.milliseconds = *middle;
-    }
+    const auto middle = m_times.begin() + static_cast<std::ptrdiff_t>(m_times.size() / 2);
+    std::nth_element(m_times.begin(), middle, m_times.end());
+    m_report.milliseconds = m_times.empty() ? 0 : *middle;
     return std::move(m_report);
   }
 
@@ -80,8 +76,8 @@ private:
     m_busy = scripted() || m_times.empty() || m_look != m_drawn;
     if (m_busy)
       draw();
-    const auto exposure = static_cast<double>(m_look.exposure);
-    m_drawer.show(0, fitted(m_screen.area(), m_transfer), exposure);
+    const Area area = fitted(m_screen.area(), m_transfer);
+    m_drawer.show(0, area, static_cast<double>(m_look.exposure));
     if (m_panel)
       show_panel();
     const bool last = scripted() && m_frame + 1 == *m_input.script.frames;
@@ -105,12 +101,13 @@ private:
   }
 
   void draw() {
-    const Clock::time_point begin = Clock::now();
+    const auto begin = std::chrono::steady_clock::now();
     const auto& [yaw, pitch, roll] = m_look.rotate;
     if (m_times.empty() || m_look.rotate != m_drawn.rotate)
       m_drawer.set_light(m_light.turned(turn_of(Eigen::Vector3f(yaw, pitch, roll).cast<double>())));
     m_drawer.draw(m_look.level);
-    m_times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+    const auto passed = std::chrono::steady_clock::now() - begin;
+    m_times.push_back(std::chrono::duration<double, std::milli>(passed).count());
     m_drawn = m_look;
     ++m_report.frames;
   }
