@@ -18,8 +18,10 @@ unsigned compile(GLenum kind, const std::string& text) {
   if (good == GL_TRUE)
     return shader;
   std::string log(2000, '\0');
-  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  throw std::runtime_error("a shader does not compile: " + std::string(log.c_str()));
+  GLsizei length = 0;
+  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  throw std::runtime_error("a shader does not compile: " + log);
 }
 
 } // namespace

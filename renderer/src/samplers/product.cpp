@@ -6,8 +6,8 @@
 
 #include "../visibility/hit_occlusion.h"
 #include "kinds.h"
+#include "light_mixture.h"
 #include "product_options.h"
-#include "product_tree_sampler.h"
 
 #include <wavelet/adaptive_product.h>
 
@@ -17,11 +17,14 @@
 namespace haarlight::renderer {
 namespace {
 
-class ProductSampler : public ProductTreeSampler {
+/// A quarter of the samples follows the light where something may be in its way.
+constexpr std::size_t samples_each_of_light = 4;
+
+class ProductSampler : public LightMixture {
 public:
   ProductSampler(const LoadedScene& scene, const ProductOptions& options)
-      : m_light(scene.light()), m_builder(m_light.tree()), m_options(options),
-        m_occlusion(scene.shapes(), m_light) {}
+      : LightMixture(scene.light(), samples_each_of_light), m_builder(scene.light().tree()),
+        m_options(options), m_occlusion(scene.shapes(), scene.light()) {}
 
   void forget() override { m_follows = false; }
 
@@ -38,49 +41,11 @@ public:
     m_mixes = shadowed && !m_product->empty();
   }
 
-  void sample(const PointSource& points, std::span<DirectionSample> out) override {
-    const std::size_t of_light = m_mixes ? light_count(out.size()) : 0;
-    const std::span<DirectionSample> own = out.first(out.size() - of_light);
-    ProductTreeSampler::sample(points, own);
-    if (of_light == 0)
-      return;
-    const float share = static_cast<float>(of_light) / static_cast<float>(out.size());
-    for (DirectionSample& s : own)
-      s.pdf = (1 - share) * s.pdf + share * m_light.pdf(s.direction);
-    sample_light(points, share, out.last(of_light));
-  }
-
-  float pdf(const Vec3& direction, std::size_t count) const override {
-    const float own = ProductTreeSampler::pdf(direction, count);
-    if (!m_mixes)
-      return own;
-    const float share = static_cast<float>(light_count(count)) / static_cast<float>(count);
-    return (1 - share) * own + share * m_light.pdf(direction);
-  }
-
 private:
-  static std::size_t light_count(std::size_t count) { return count / 4; }
-
-  void sample_light(const PointSource& points, float share, std::span<DirectionSample> out) {
-    m_points.resize(out.size());
-    m_samples.resize(out.size());
-    points.fill(0, m_points);
-    m_light.sample(m_points, m_samples);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const Vec3& direction = m_samples[i].direction;
-      out[i] = {direction,
-                (1 - share) * ProductTreeSampler::pdf(direction, 1) + share * m_samples[i].pdf};
-    }
-  }
-
-  const Light& m_light;
   wavelet::AdaptiveProduct m_builder;
   ProductOptions m_options;
   detail::HitOcclusion m_occlusion;
   bool m_follows = false;
-  bool m_mixes = false;
-  std::vector<Vec2> m_points;
-  std::vector<probe::LightSample> m_samples;
 };
 
 /// Where shadows add about ten times the variance that stays in the open, bounds are so much

@@ -4,8 +4,8 @@
 
 #include "../visibility/seen_squares.h"
 #include "kinds.h"
+#include "light_mixture.h"
 #include "product_options.h"
-#include "product_tree_sampler.h"
 
 #include <wavelet/adaptive_product.h>
 
@@ -14,11 +14,14 @@
 namespace haarlight::renderer {
 namespace {
 
-class ProductVisibilitySampler : public ProductTreeSampler {
+/// One in so many samples follows the light where something may be in its way.
+constexpr std::size_t samples_each_of_light = 16;
+
+class ProductVisibilitySampler : public LightMixture {
 public:
   ProductVisibilitySampler(const LoadedScene& scene, const ProductOptions& options)
-      : m_builder(scene.light().tree()), m_options(options),
-        m_visibility(scene.shapes(), scene.light()) {}
+      : LightMixture(scene.light(), samples_each_of_light), m_builder(scene.light().tree()),
+        m_options(options), m_visibility(scene.shapes(), scene.light()) {}
 
   void forget() override { m_follows = false; }
 
@@ -32,6 +35,7 @@ public:
                             : &m_builder.build(reflectance, m_options.open);
     }
     m_follows = true;
+    m_mixes = point.hit != nullptr && !m_product->empty();
   }
 
 private:

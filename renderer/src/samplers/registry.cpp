@@ -116,7 +116,7 @@ constexpr std::array entries = {
     Entry{.traits = {.kind = SamplerKind::ProductVisibility,
                      .name = "product-visibility",
                      .summary = "as product, times what is seen past the scene's objects",
-                     .needs = NeedsLightTree | NeedsMaterialTrees,
+                     .needs = NeedsLightTree | NeedsMaterialTrees | NeedsLightDistribution,
                      .follows_product = true},
           .make = make_product_visibility_factory},
 };
