@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # haarview: frames against the same trees on the CPU, level by level, and its misuse.
 source "$(dirname "$0")/lib.sh" "$1"
-
-[ -x "$bin/haarview" ] || { echo "skipped: haarview was not built"; exit 77; }
+source "$(dirname "$0")/view_lib.sh"
 
 "$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.05 --roughness 0.15 -q -o brdf.binary >/dev/null
 "$bin/brdf2maps" brdf.binary -q --size 128 --theta 32 --conservation-tolerance 1 -o brdf.haar >/dev/null
@@ -23,16 +22,7 @@ END
 }
 scene scene.json '{"type": "sphere", "center": [0, -0.7, 1.5], "radius": 0.3, "material": "fine"}'
 
-if ! "$bin/haarview" brdf.haar --frame probe.exr -q --size 8x8 >"$log/out" 2>"$log/err"; then
-  grep -q "^haarview: EGL: " "$log/err" || { cat "$log/err"; exit 1; }
-  echo "skipped: $(cat "$log/err")"
-  exit 77
-fi
-rm probe.exr
-
-# number EXPRESSION: it must hold; errors prints the relative errors: the frame's, then each level's.
-number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
-errors() { sed -n 's/.*"relative_rms": *\([0-9.e+-]*\).*/\1/p' "$log/out"; }
+needs_egl brdf.haar --size 8x8
 
 # agrees FRAMES…: at full level within 1 % of the CPU, at level 0 far from it, at finer ones nearer
 agrees() {

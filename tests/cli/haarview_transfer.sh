@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # haarview of transfer: frames against haarrelight apply, level by level, and its misuse.
 source "$(dirname "$0")/lib.sh" "$1"
-
-[ -x "$bin/haarview" ] || { echo "skipped: haarview was not built"; exit 77; }
+source "$(dirname "$0")/view_lib.sh"
 
 "$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.05 -q -o brdf.binary >/dev/null
 "$bin/brdf2maps" brdf.binary -q --size 64 --theta 16 --conservation-tolerance 1 -o brdf.haar >/dev/null
@@ -22,16 +21,7 @@ END
 "$bin/haarrelight" build scene.json --vary light --resolution 64 -q -o light.haar >/dev/null
 "$bin/haarrelight" build scene.json --vary object:ball --size 8x8 -q -o object.haar >/dev/null
 
-if ! "$bin/haarview" light.haar --frame probe.exr -q >"$log/out" 2>"$log/err"; then
-  grep -q "^haarview: EGL: " "$log/err" || { cat "$log/err"; exit 1; }
-  echo "skipped: $(cat "$log/err")"
-  exit 77
-fi
-rm probe.exr
-
-# number EXPRESSION: it must hold; errors prints the relative errors: the frame's, then each level's.
-number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
-errors() { sed -n 's/.*"relative_rms": *\([0-9.e+-]*\).*/\1/p' "$log/out"; }
+needs_egl light.haar
 
 # agrees CHANGE…: with apply of the same change within 1 %, nearer the finer the level
 agrees() {

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # haarview's window on a screen of its own: turned, saved, beside another, and with files rewritten under it.
 source "$(dirname "$0")/lib.sh" "$1"
-
-[ -x "$bin/haarview" ] || { echo "skipped: haarview was not built"; exit 77; }
+source "$(dirname "$0")/view_lib.sh"
 
 "$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.05 --roughness 0.15 -q -o brdf.binary >/dev/null
 "$bin/brdfsynth" --model ggx --diffuse 0.05,0.1,0.4 --roughness 0.4 -q -o other.binary >/dev/null
