@@ -108,8 +108,9 @@ std::vector<float> FactoredBrdf::row_of(const Evaluate& evaluate, int view) cons
   for (std::size_t i = 0; i < theta; ++i) {
     for (std::size_t n = 0; n < wi.size(); ++n) {
       const float along = (static_cast<float>(n % taps) + 0.5F) / taps;
-      const float around = (static_cast<float>(n / taps) + 0.5F) / static_cast<float>(phi * taps);
-      const float side = (n / taps) % 2 == 0 ? 1.0F : -1.0F; // both halves count
+      const std::size_t turn = n / taps;
+      const float around = (static_cast<float>(turn) + 0.5F) / static_cast<float>(phi * taps);
+      const float side = turn % 2 == 0 ? 1.0F : -1.0F; // both halves count
       const Vec3 h = half_vector(edge(i) + along * (edge(i + 1) - edge(i)), side * around * pi);
       wi[n] = mirror(wo, h);
       jacobian[n] = std::max(0.0F, wo.dot(h)) * (edge(i + 1) - edge(i));
@@ -199,8 +200,9 @@ FactoredBrdf::View FactoredBrdf::view(const Vec3& local_wo) const {
     const float a = m_weights[first * max_terms + l];
     result.weights[l] = a + (m_weights[second * max_terms + l] - a) * blend;
   }
-  normalise(
-      std::span(result.weights).first(static_cast<std::size_t>(m_options.outer * m_options.inner)));
+  const auto terms =
+      static_cast<std::size_t>(m_options.outer) * static_cast<std::size_t>(m_options.inner);
+  normalise(std::span(result.weights).first(terms));
   return result;
 }
 
