@@ -53,8 +53,7 @@ void RegionTreeBuilder::split_level(const Region& region, int level, int levels)
   const std::size_t end = m_nodes.size();
   for (std::size_t i = begin; i < end; ++i)
     for (unsigned q = 0; q < 4; ++q) {
-      const SquarePlace square = {level + 1, 2 * m_nodes[i].column + (q & 1U),
-                                  2 * m_nodes[i].row + (q >> 1U)};
+      const SquarePlace square = SquarePlace{level, m_nodes[i].column, m_nodes[i].row}.quadrant(q);
       const RegionPart part = region.classify(square);
       if (part == RegionPart::Partial && level + 1 < levels) {
         m_nodes[i].children[q] = static_cast<std::uint32_t>(m_nodes.size());

@@ -3,8 +3,9 @@
 #include "ray_lanes.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
+#include <optional>
 
 namespace haarlight::renderer::detail {
 
