@@ -133,6 +133,8 @@ int look_into(const tool::Tool& app, const Options& options) {
     throw tool::UsageError("--html: \"" + options.page + "\" does not end in .html");
   if (!options.reference.empty() && options.page.empty())
     throw tool::UsageError("--against needs --html");
+  if (options.path == "-" && options.reference == "-")
+    throw tool::UsageError("two inputs are standard input ('-')");
   return options.validate ? validate(app, options.path) : inspect(app, options);
 }
 

@@ -2,6 +2,7 @@
 #include <render/film_output.h>
 #include <render/integrator.h>
 #include <render/render_options.h>
+#include <support/output_size.h>
 #include <support/program.h>
 #include <support/progress.h>
 
@@ -24,6 +25,7 @@ struct Options {
   SourceLookups lookups;
   RenderOptions render;
   tool::IntegratorOptions integrator;
+  bool force = false;
 };
 
 void declare(tool::Tool& app, Options& options) {
@@ -41,6 +43,7 @@ void declare(tool::Tool& app, Options& options) {
   app.text(options.size, "--size", "WxH", "Size of the film in pixels, in place of the scene's");
   app.text(options.png, "--png", "OUT.png", "Write a tone-mapped preview too");
   app.value(options.exposure, "--exposure", "Stops that the preview is brightened by", -30, 30);
+  tool::add_force(app, options.force);
   app.offer_json();
 }
 
@@ -65,6 +68,8 @@ int render_scene(const tool::Tool& app, Options& options) {
   SceneDescription description = load_scene(options.scene);
   if (!options.size.empty())
     tool::set_film_size(options.size, description);
+  tool::require_room(options.output, tool::film_size(description.width, description.height),
+                     options.force);
   const LoadedScene scene(description, options.lookups, options.render.sampler,
                           needs_unshadowed(options.render.estimator),
                           tool::needs_of(options.integrator));

@@ -1,6 +1,7 @@
 #include "foreign_image.h"
 
 #include <wavelet/error.h>
+#include <wavelet/input_file.h>
 
 #include <climits>
 
@@ -40,7 +41,7 @@ ForeignImage read_foreign_image(const std::string& path) {
     throw_input_error(path, std::string("is no Radiance RGBE picture, and ") + module_name +
                                 ", which reads other formats, cannot be loaded");
   ForeignImage result;
-  read(path, result);
+  read(openable_path(path), result);
   if (!result.error.empty())
     throw_input_error(path, result.error);
   return result;

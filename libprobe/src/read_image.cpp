@@ -38,7 +38,7 @@ std::size_t clean_pixels(Image& image, const std::string& path) {
 
 LoadedImage read_image(const std::string& path) {
   const InputFile file(path);
-  if (file.bytes().empty())
+  if (file.size() == 0)
     throw_input_error(path, "is empty, a picture is needed");
   LoadedImage loaded;
   loaded.name = base_name(path);

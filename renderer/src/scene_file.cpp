@@ -22,7 +22,8 @@ constexpr std::size_t scene_bytes_max = std::size_t{1} << 26;
 class Folder {
 public:
   explicit Folder(const std::string& scene_path)
-      : m_prefix(scene_path.substr(0, scene_path.size() - base_name(scene_path).size())) {}
+      : m_prefix(names_descriptor(scene_path) ? "./"
+                                              : scene_path.substr(0, scene_path.rfind('/') + 1)) {}
 
   /// The file a key names; empty if the key is not there.
   std::string file(const SceneNode& node, std::string_view key) const {
@@ -30,7 +31,8 @@ public:
     if (!name)
       return {};
     const std::string text = name->text();
-    return text.front() == '/' ? text : m_prefix + text;
+    const std::string path = text.front() == '/' ? text : m_prefix + text;
+    return path == "-" ? "./-" : path; // a scene names files only
   }
 
 private:
@@ -172,7 +174,7 @@ std::vector<ObjectDescription> read_objects(const SceneNode& node,
 
 SceneDescription load_scene(const std::string& path) {
   const InputFile file(path);
-  if (file.bytes().size() > scene_bytes_max)
+  if (file.size() > scene_bytes_max)
     throw_input_error(path, "is larger than 64 MiB, which no scene is");
   const JsonValue value = parse_json(file.bytes(), path);
   const SceneNode root(value, "", path);

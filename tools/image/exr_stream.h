@@ -36,7 +36,7 @@ private:
   std::uint64_t m_size = 0;
 };
 
-/// Reads from mapped bytes, which must outlive it.
+/// Reads from the bytes of a file, which must outlive it.
 class ExrInputStream : public Imf::IStream {
 public:
   explicit ExrInputStream(const InputFile& file);

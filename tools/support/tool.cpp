@@ -19,6 +19,15 @@ std::string version_line(const std::string& name) {
   return name + " (" + version.insert(version.find(' '), ")");
 }
 
+/// Standard input can be one input only.
+void claim_standard_input(bool& claimed, const std::string& word) {
+  if (word != "-" && word != "/dev/stdin")
+    return;
+  if (claimed)
+    throw CLI::ValidationError("two inputs are standard input ('-')");
+  claimed = true;
+}
+
 /// A path that is needed: CLI11 itself would let an empty one pass.
 void set_path(std::string& path, const std::string& word) {
   if (word.empty())
@@ -44,14 +53,29 @@ Tool::~Tool() = default;
 void Tool::input(std::string& path, const std::string& placeholder, const std::string& help) {
   m_parser->app
       .add_option_function<std::string>(
-          placeholder, [&path](const std::string& word) { set_path(path, word); }, help)
+          placeholder,
+          [this, &path](const std::string& word) {
+            claim_standard_input(m_standard_input, word);
+            set_path(path, word);
+          },
+          help)
       ->type_name("")
       ->required();
 }
 
 void Tool::inputs(std::vector<std::string>& paths, const std::string& placeholder,
                   const std::string& help) {
-  m_parser->app.add_option(placeholder, paths, help)->type_name("")->required();
+  m_parser->app
+      .add_option_function<std::vector<std::string>>(
+          placeholder,
+          [this, &paths](const std::vector<std::string>& words) {
+            for (const std::string& word : words)
+              claim_standard_input(m_standard_input, word);
+            paths = words;
+          },
+          help)
+      ->type_name("")
+      ->required();
 }
 
 void Tool::output(std::string& path, const std::string& placeholder, const std::string& help) {

@@ -44,7 +44,7 @@ public:
   Tool(const Tool&) = delete;
   Tool& operator=(const Tool&) = delete;
 
-  /// A required positional argument: a path.
+  /// A required positional argument: a path, "-" for standard input.
   void input(std::string& path, const std::string& placeholder, const std::string& help);
   /// One or more positional paths.
   void inputs(std::vector<std::string>& paths, const std::string& placeholder,
@@ -143,6 +143,7 @@ private:
   bool m_quiet = false;
   bool m_verbose = false;
   bool m_json = false;
+  bool m_standard_input = false; ///< an input is read from it
   int m_threads = 0;
 };
 
