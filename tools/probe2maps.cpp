@@ -4,6 +4,7 @@
 
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
+#include <wavelet/out_of_memory.h>
 
 #include <bit>
 
@@ -49,14 +50,18 @@ void check(const probe::MapOptions& maps) {
 
 int make_maps(const tool::Tool& app, const Options& options) {
   check(options.maps);
-  const probe::LoadedProbe loaded = probe::read_probe(options.input, options.mapping);
+  const probe::LoadedProbe loaded = with_memory_for("the pixels of " + options.input, 0, [&] {
+    return probe::read_probe(options.input, options.mapping);
+  });
   app.note(options.input + ": " + loaded.mapping_reason);
   for (const std::string& note : loaded.notes)
     app.note(options.input + ": " + note);
   tool::Report report;
   report.add("source", loaded.source.get("source"))
       .add("mapping", probe::mapping_name(loaded.probe.mapping()));
-  const probe::ProbeMaps maps(loaded.probe, options.maps, loaded.source);
+  const auto maps = with_memory_for("the directions of the probe's pixels", 0, [&] {
+    return probe::ProbeMaps(loaded.probe, options.maps, loaded.source);
+  });
   return tool::write_map_set(app, maps, options.output, report);
 }
 

@@ -36,6 +36,10 @@ private:
   std::uint64_t m_size = 0;
 };
 
+/// Gives OpenEXR as many threads as parallel_for uses, or none where the system refuses them.
+/// @return their number
+int start_exr_threads();
+
 /// Reads from mapped bytes, which must outlive it.
 class ExrInputStream : public Imf::IStream {
 public:
