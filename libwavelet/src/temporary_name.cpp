@@ -94,11 +94,11 @@ void remove_if_dead(int folder, const char* name, const std::string& path) {
   ::close(descriptor);
 }
 
-bool first_visit(const struct stat& folder) {
+bool first_visit(const std::string& folder) {
   static std::mutex mutex;
-  static std::set<std::pair<dev_t, ino_t>> visited;
+  static std::set<std::string> visited;
   const std::lock_guard lock(mutex);
-  return visited.insert({folder.st_dev, folder.st_ino}).second;
+  return visited.insert(folder).second;
 }
 
 } // namespace
@@ -175,14 +175,12 @@ std::string temporary_path(const std::string& folder) {
 }
 
 void remove_leftovers(const std::string& folder) {
-  DIR* const entries = ::opendir(folder.c_str());
+  DIR* const entries = first_visit(folder) ? ::opendir(folder.c_str()) : nullptr;
   if (entries == nullptr)
     return;
-  struct stat status = {};
-  if (::fstat(::dirfd(entries), &status) == 0 && first_visit(status))
-    while (const dirent* entry = ::readdir(entries))
-      if (is_of_this_host(entry->d_name))
-        remove_if_dead(::dirfd(entries), entry->d_name, folder + "/" + entry->d_name);
+  while (const dirent* entry = ::readdir(entries))
+    if (is_of_this_host(entry->d_name))
+      remove_if_dead(::dirfd(entries), entry->d_name, folder + "/" + entry->d_name);
   ::closedir(entries);
 }
 
