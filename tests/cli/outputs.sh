@@ -39,7 +39,10 @@ for signal in INT:130 TERM:143 HUP:129 QUIT:131; do
 done
 # an ignored signal stays ignored
 code=0
-(trap '' HUP && exec timeout --preserve-status -s HUP 0.1 "$bin/haarrender" scene.json -q --spp 1024 -o a.exr >/dev/null) || code=$?
+nohup "$bin/haarrender" scene.json -q --spp 4096 -o a.exr >/dev/null 2>&1 &
+sleep 0.2
+kill -HUP $!
+wait $! || code=$?
 [ "$code" -eq 0 ] && [ -s a.exr ] || fail "an ignored HUP ends haarrender: exit code $code"
 rm a.exr
 # at any time: the old output or the new one
@@ -58,7 +61,7 @@ rm new.haar
 # leftovers of killed runs: removed by the next run; those of live processes and other hosts stay
 stopped KILL 0.3 brdf2maps "${long[@]}" -o out.haar
 leaves "${inputs[@]}" out.haar
-LD_PRELOAD=$refusals REFUSE=tmpfile stopped KILL 0.5 brdf2maps "${long[@]}" -o out.haar
+LD_PRELOAD=$refusals REFUSE=tmpfile stopped KILL 1.5 brdf2maps "${long[@]}" -o out.haar
 leftover=$(ls -A | grep '^\.haarlight-tmp\.')
 [ -n "$leftover" ] || fail "a killed run leaves no recognisable temporary: $(ls -A)"
 other=${leftover/tmp.$(hostname)/tmp.another-host}
