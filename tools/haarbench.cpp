@@ -21,20 +21,23 @@ using namespace haarlight::bench;
 namespace {
 
 /// Makes the folders and throws now rather than after the work if nothing can be written there.
-void require_writable(const std::string& folder) {
+void require_writable(const tool::Tool& app, const std::string& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder + "/cache", problem);
   if (problem)
     throw_output_error(folder, "cannot be made a folder: " + problem.message());
-  for (const char* name : {"/results.json", "/results.csv", "/report.html"})
+  for (const char* name : {"/results.json", "/results.csv", "/report.html"}) {
+    app.writes("--output", folder + name);
     const OutputFile trial(folder + name);
+  }
 }
 
 /// A scene file that is broken is told of before any long work, too.
-void check_scenes(const Plan& plan) {
+void check_scenes(const tool::Tool& app, const Plan& plan) {
   for (const std::string& word : plan.scenes) {
     renderer::SceneDescription scene = scene_of(word);
     tool::set_film_size(plan.size, scene);
+    tool::check_sources(app, scene);
   }
 }
 
@@ -78,9 +81,9 @@ std::vector<PairResult> measure_all(const tool::Tool& app, const Plan& plan,
 
 int compare_samplers(const tool::Tool& app, Plan& plan) {
   check(plan);
-  check_scenes(plan);
+  check_scenes(app, plan);
   Collection collection = open_subjects(plan);
-  require_writable(plan.folder);
+  require_writable(app, plan.folder);
   make_trees(plan, Cache(app, plan.folder + "/cache", plan.cache), collection);
   const std::vector<PairResult> pairs = measure_all(app, plan, collection);
   const std::vector<Row> rows = rows_of(pairs); // verdicts point into them

@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
   declare(app, options);
   return app.run(argc, argv, [&] {
     const std::string& path = options.output.path;
-    if (!tool::has_extension(path, ".haar"))
+    options.output.stream_trees = true;
+    if (path != standard_output && !tool::has_extension(path, ".haar"))
       throw tool::UsageError("--output: '" + path + "' does not end in .haar");
     if (options.unpack && options.output.compression.packed)
       throw tool::UsageError("--pack and --unpack exclude each other");

@@ -100,6 +100,7 @@ int build(const Tool& app, Options& options) {
     set_film_size(options.size, scene);
   if (scene.width > 65536 || scene.height > 65536)
     throw UsageError("--size: a transfer has at most 65536 pixels along a side");
+  check_sources(app, scene);
   const Variation variation = variation_of(scene, options.vary);
   options.projection.tolerance =
       options.tolerance.value_or(default_transfer_tolerance(variation.varying));

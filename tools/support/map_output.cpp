@@ -76,8 +76,9 @@ int write_haar_set(const Tool& tool, const wavelet::MapSource& source, const Map
 } // namespace
 
 void add_map_output(Tool& tool, MapOutput& output) {
-  tool.output(output.path, "OUT.exr|OUT.haar",
-              "Map set to write: one tiled EXR, or compressed to a .haar file");
+  tool.output(
+      output.path, "OUT.exr|OUT.haar",
+      "Map set to write: one tiled EXR, or compressed to a .haar file (a pipe takes the EXR)");
   add_compress_options(tool, output);
   add_force(tool, output.force);
   tool.value(output.conservation_tolerance, "--conservation-tolerance",
@@ -89,9 +90,10 @@ void add_map_output(Tool& tool, MapOutput& output) {
 int write_map_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
                   Report report) {
   describe_set(source.info(), report);
-  if (has_extension(output.path, ".haar"))
+  const bool stream = output.path == standard_output;
+  if (stream ? output.stream_trees : has_extension(output.path, ".haar"))
     return write_haar_set(tool, source, output, report);
-  if (has_extension(output.path, ".exr"))
+  if (stream || has_extension(output.path, ".exr"))
     return write_exr_set(tool, source, output, report);
   throw UsageError("--output: '" + output.path + "' ends in neither .exr nor .haar");
 }
