@@ -34,10 +34,13 @@ once "$out/source/studio.hdr" "$bin/probesynth" --scene studio --size 512
 once "$out/source/sun-sky.hdr" "$bin/probesynth" --scene sun-sky --size 512
 
 echo "== trees and pictures"
-# make reads $$ as $, and in a list a backslash before a blank.
-make --no-print-directory -C pipelines -j "$jobs" OUT="${out//\$/\$\$}" TABLES=1 SPP=$spp \
-  BRDF="$(printf '%q ' "$out"/source/{plastic,metal,paint}.binary)" \
-  PROBE="$(printf '%q ' "$out"/source/{studio,sun-sky}.hdr)" >/dev/null
+# make reads $$ as $, and in a list a backslash makes a blank part of a word.
+for_make=${out//\$/\$\$}
+in_list=${for_make//\\/\\\\}
+in_list=${in_list// /\\ }
+make --no-print-directory -C pipelines -j "$jobs" OUT="$for_make" TABLES=1 SPP=$spp \
+  BRDF="$(printf '%s ' "$in_list"/source/{plastic,metal,paint}.binary)" \
+  PROBE="$(printf '%s ' "$in_list"/source/{studio,sun-sky}.hdr)" >/dev/null
 
 echo "== demo picture"
 cp pipelines/scenes/demo.json "$out/scene/demo.json"

@@ -5,6 +5,7 @@
 # Usage, by Makefile: make_pid=… calling_folder=… BRDF=… PROBE=… OUT=… … bash settings.sh [GOAL…]
 set -euo pipefail
 export LC_ALL=C
+: "${make_pid:?}" "${calling_folder=}"
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
 
 refuse() {
@@ -88,11 +89,11 @@ all_exist() {
 }
 
 # find_caller PATH…: sets `caller` to the folder that relative paths count from. Without -C that is the
-# current folder. With -C make has left it, and $PWD may be stale or missing. The current folder of the process
-# that called make is the other candidate, which is wrong after `sh -c 'cd x && make …'`, where make replaces
-# the shell; OLDPWD is that folder then. The paths exist in the right folder.
+# current folder. With -C make has left it, and $PWD may be stale or missing. The other candidate is the current
+# folder of the process that called make. If that one is OLDPWD, a shell has left it in `cd x && make …` and make
+# has replaced the shell. The paths must exist in the right folder.
 find_caller() {
-  local folder parent candidates=() fitting=() candidate
+  local folder parent candidate fitting=()
   folder=$(folder_of_make)
   if [ -z "$folder" ]; then
     caller=$(pwd -P)
@@ -100,20 +101,23 @@ find_caller() {
   fi
   parent=$(sed -n 's/^PPid:[[:space:]]*//p' "/proc/$make_pid/status")
   parent=$(readlink "/proc/$parent/cwd" || true)
+  caller=
   for candidate in "$calling_folder" "$parent"; do
     [[ $candidate == /* && -d $candidate ]] || continue
     [[ $folder == /* || $candidate/$folder -ef . ]] || continue
-    [ ${#candidates[@]} -eq 0 ] || [ ! "$candidate" -ef "${candidates[0]}" ] || continue
-    candidates+=("$candidate")
+    [ -z "$caller" ] || [ ! "$candidate" -ef "$caller" ] || continue
+    caller=${caller:-$candidate}
     ! all_exist "$candidate" "$@" || fitting+=("$candidate")
   done
-  [ ${#candidates[@]} -gt 0 ] || refuse "The folder that make was called in is unknown: use absolute paths"
-  [ ${#fitting[@]} -gt 0 ] || fitting=("${candidates[0]}")
-  if [ ${#fitting[@]} -gt 1 ]; then
-    [ "${OLDPWD:-}" -ef "$parent" ] ||
-      refuse "Relative paths may count from ${fitting[0]} (\$PWD) or ${fitting[1]}: use absolute paths"
+  caller=${fitting[0]:-$caller}
+  [ -n "$caller" ] || refuse "The folder that make was called in is unknown: use absolute paths"
+  if [ "${OLDPWD:-}" -ef "$parent" ]; then
+    [ "$caller" -ef "$calling_folder" ] ||
+      refuse "Relative paths do not count from $parent, and \$PWD is missing or wrong: use absolute paths"
+  elif [ ${#fitting[@]} -gt 1 ]; then
+    refuse "Relative paths may count from ${fitting[0]} (\$PWD) or ${fitting[1]}: use absolute paths"
   fi
-  caller=$(cd -- "${fitting[0]}" && pwd -P)
+  caller=$(cd -- "$caller" && pwd -P)
 }
 
 # absolute PATH
@@ -236,7 +240,7 @@ goals=" ${*:-pictures} " # with blanks around each
 for lone in gallery readme; do
   [[ $goals != *" $lone "* || $goals == " $lone " ]] || refuse "Make $lone without other goals"
 done
-default_out=
+out='' bin='' scene='' pictures='' sheet='' brdf_words=() probe_words=() default_out=''
 case $goals in
 " gallery " | " readme ") default_out=$here/out/${goals//[[:space:]]/} spp=128 ;;
 esac

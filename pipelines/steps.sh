@@ -5,6 +5,7 @@ set -euo pipefail
 export LC_ALL=C
 unset CDPATH
 
+# shellcheck disable=SC2034 # the recipes use here, pictures and sheet
 here='' out='' bin='' scene='' pictures='' sheet='' sampler='' spp='' threads='' tables='' keep_maps=''
 brdf_flags=() probe_flags=() haar_flags=() render_flags=() brdf_table_flags=() probe_table_flags=()
 
@@ -13,6 +14,7 @@ decode() { printf -v "$1" '%b' "${2//+/\\x}"; }
 
 read_settings() {
   local word key value
+  # shellcheck disable=SC2154 # make exports it
   for word in $settings; do
     key=${word%%=*}
     decode value "${word#*=}"
