@@ -23,7 +23,8 @@ struct Options {
 };
 
 void declare(tool::Tool& app, Options& o) {
-  app.input(o.input, "IN", "Light probe: Radiance RGBE, OpenEXR, PFM, TIFF, PNG or JPEG, known by its content");
+  app.input(o.input, "IN",
+            "Light probe: Radiance RGBE, OpenEXR, PFM, TIFF, PNG or JPEG, known by its content");
   tool::add_map_output(app, o.output);
   app.value(o.maps.size, "--size",
             "Pixels along a map's side, a power of two from 4; 0 = 512 to 2048, losing nothing, or "
@@ -41,10 +42,10 @@ void declare(tool::Tool& app, Options& o) {
               {"octahedral", probe::Mapping::Octahedral}},
              "How the picture shows the sphere; auto judges by aspect and content");
   app.text(o.image.layer, "--layer", "NAME",
-            "Layer of an OpenEXR file: the channels NAME.R, NAME.G, NAME.B or NAME.Y. Default: R, "
-            "G, B without a layer, else the only layer with these, else Y");
+           "Layer of an OpenEXR file: the channels NAME.R, NAME.G, NAME.B or NAME.Y. Default: R, "
+           "G, B without a layer, else the only layer with these, else Y");
   app.text(o.image.part, "--part", "N|NAME",
-            "Part of an OpenEXR file by name or number, page of a TIFF file by number; from 0");
+           "Part of an OpenEXR file by name or number, page of a TIFF file by number; from 0");
 }
 
 void check(const probe::MapOptions& maps) {
@@ -55,8 +56,8 @@ void check(const probe::MapOptions& maps) {
 
 int make_maps(const tool::Tool& app, const Options& options) {
   check(options.maps);
-  const probe::LoadedProbe loaded = probe::read_probe(
-      options.input, options.mapping, probe::Lookup::Nearest, options.image);
+  const probe::LoadedProbe loaded =
+      probe::read_probe(options.input, options.mapping, probe::Lookup::Nearest, options.image);
   app.note(options.input + ": " + loaded.mapping_reason);
   for (const std::string& note : loaded.notes)
     app.note(options.input + ": " + note);

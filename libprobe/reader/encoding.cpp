@@ -50,8 +50,8 @@ template <class T>
 std::vector<float> RowConverter::make_table(std::size_t channel) const {
   std::vector<float> table(std::size_t{std::numeric_limits<T>::max()} + 1);
   for (std::size_t i = 0; i < table.size(); ++i)
-    table[i] = static_cast<float>(
-        apply_curve(unit_value(static_cast<T>(i), m_layout.inverted), channel));
+    table[i] =
+        static_cast<float>(apply_curve(unit_value(static_cast<T>(i), m_layout.inverted), channel));
   return table;
 }
 

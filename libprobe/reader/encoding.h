@@ -43,8 +43,8 @@ enum class Alpha {
 
 /// Samples as stored, interleaved.
 struct SampleLayout {
-  int samples = 3; ///< of a pixel, colours first
-  int colours = 3; ///< 1 or 3
+  int samples = 3;           ///< of a pixel, colours first
+  int colours = 3;           ///< 1 or 3
   Alpha alpha = Alpha::None; ///< of the sample after the colours
   bool inverted = false;     ///< 0 is white
 };

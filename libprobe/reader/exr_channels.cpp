@@ -84,7 +84,8 @@ std::vector<Layer> layers_of_part(const Imf::Header& header, int part) {
       layers.push_back(added);
       found = layers.end() - 1;
     }
-    add_channel(*found, full_name, dot == std::string::npos ? full_name : full_name.substr(dot + 1));
+    add_channel(*found, full_name,
+                dot == std::string::npos ? full_name : full_name.substr(dot + 1));
   }
   return layers;
 }
@@ -131,8 +132,7 @@ int chosen_part(const Imf::MultiPartInputFile& file, const std::string& choice) 
 /// channels without a layer.
 void keep_layer(std::vector<Layer>& layers, const std::string& choice) {
   const auto is_named = [&](const Layer& layer, bool any_case) {
-    const std::string& name =
-        layer.channels.layer.empty() ? layer.part_name : layer.channels.layer;
+    const std::string& name = layer.channels.layer.empty() ? layer.part_name : layer.channels.layer;
     return any_case ? lower_case(name) == lower_case(choice) : name == choice;
   };
   for (const bool any_case : {false, true}) {
@@ -185,7 +185,8 @@ ExrChannels find_colours(const Imf::MultiPartInputFile& file, const ImageChoice&
     if (met.size() == 1)
       return met.front().channels;
   }
-  const bool deep = std::any_of(layers.begin(), layers.end(), [](const Layer& l) { return l.deep; });
+  const bool deep =
+      std::any_of(layers.begin(), layers.end(), [](const Layer& l) { return l.deep; });
   throw Refusal(std::string("has no layer of the channels R, G, B or Y") +
                 (deep ? ", and deep parts are not read" : "") + ": it has " + all);
 }

@@ -4,9 +4,10 @@
 #include "exr_channels.h"
 #include "picture.h"
 
+#include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfIntAttribute.h>
@@ -29,9 +30,11 @@ using Imath::Box2i;
 /// Longest side: tables of offsets grow with it, before anything else of the file is known.
 constexpr int longest_side = 1 << 17;
 
+constexpr const char* stream_name = "input";
+
 class MemoryStream : public Imf::IStream {
 public:
-  explicit MemoryStream(std::span<const std::byte> bytes) : IStream("it"), m_bytes(bytes) {}
+  explicit MemoryStream(std::span<const std::byte> bytes) : IStream(stream_name), m_bytes(bytes) {}
 
   bool read(char to[], int count) override {
     const auto wanted = static_cast<std::size_t>(count);
@@ -105,8 +108,7 @@ void check_windows(const Imf::Header& header) {
   check_pixels(width_of(data), height_of(data));
   check_pixels(width_of(display), height_of(display));
   const std::uint64_t shown = width_of(display) * height_of(display);
-  if (shown > small_display &&
-      shown / display_per_pixel > width_of(data) * height_of(data))
+  if (shown > small_display && shown / display_per_pixel > width_of(data) * height_of(data))
     throw Refusal("has a display window of " + std::to_string(width_of(display)) + " x " +
                   std::to_string(height_of(display)) + " pixels around a data window of only " +
                   std::to_string(width_of(data)) + " x " + std::to_string(height_of(data)));
@@ -222,9 +224,7 @@ void convert_primaries(const Imf::Header& header, Picture& picture) {
       "colours were converted to Rec. 709 from the primaries of its chromaticities");
 }
 
-} // namespace
-
-Picture read_exr(const Task& task) {
+Picture read_file(const Task& task) {
   Imf::Header::setMaxImageSize(longest_side, longest_side);
   Imf::Header::setMaxTileSize(longest_side, longest_side);
   MemoryStream stream(task.bytes);
@@ -239,8 +239,8 @@ Picture read_exr(const Task& task) {
   allow_memory(for_buffers + 12 * (pixels + shown) + 3 * raw_bytes(header));
   Imf::setGlobalThreadCount(static_cast<int>(std::min(std::thread::hardware_concurrency(), 4U)));
 
-  const bool chroma = channels.red.empty() && !channels.red_chroma.empty() &&
-                      !channels.blue_chroma.empty();
+  const bool chroma =
+      channels.red.empty() && !channels.red_chroma.empty() && !channels.blue_chroma.empty();
   Picture picture;
   Image data = chroma ? read_luminance_chroma(task, file, channels) : read_colours(file, channels);
   picture.image = place(std::move(data), header.dataWindow(), header.displayWindow());
@@ -254,6 +254,24 @@ Picture read_exr(const Task& task) {
   if (header.dataWindow() != header.displayWindow())
     picture.notes.emplace_back("the data window was placed in the display window");
   return picture;
+}
+
+/// A message of the library without its beginning, which names the stream.
+std::string message_of(const std::exception& error) {
+  const std::string text = error.what();
+  const std::string prefix = '"' + std::string(stream_name) + "\". ";
+  const auto found = text.find(prefix);
+  return found == std::string::npos ? text : text.substr(found + prefix.size());
+}
+
+} // namespace
+
+Picture read_exr(const Task& task) {
+  try {
+    return read_file(task);
+  } catch (const Iex::BaseExc& error) {
+    throw Refusal("cannot be decoded: OpenEXR: " + first_line(message_of(error)));
+  }
 }
 
 } // namespace haarlight::probe::reader

@@ -23,7 +23,8 @@
 namespace haarlight::probe::reader {
 namespace {
 
-/// Memory for what the size of the pixels does not account for: headers, tables of offsets, buffers.
+/// Memory for what the size of the pixels does not account for: headers, tables of offsets,
+/// buffers.
 constexpr std::uint64_t working_memory = std::uint64_t{40} << 20;
 
 std::uint64_t virtual_memory() {
@@ -123,8 +124,7 @@ int main(int argc, char** argv) {
   } catch (const Refusal& refusal) {
     send_text(1, refusal.what());
   } catch (const std::exception& error) {
-    const std::string text = error.what();
-    send_text(1, "cannot be decoded: " + text.substr(0, text.find_first_of("\r\n")));
+    send_text(1, "cannot be decoded: " + first_line(error.what()));
   }
   ::_exit(0); // destructors of a library that met a damaged file are not to be trusted
 }

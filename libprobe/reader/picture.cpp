@@ -8,9 +8,7 @@ namespace {
 /// Integers of a TIFF header, in its byte order; 0 beyond the end.
 class ExifBytes {
 public:
-  explicit ExifBytes(std::span<const std::byte> bytes) : m_bytes(bytes) {
-    m_little = at(0) == 'I';
-  }
+  explicit ExifBytes(std::span<const std::byte> bytes) : m_bytes(bytes) { m_little = at(0) == 'I'; }
 
   unsigned at(std::size_t offset) const {
     return offset < m_bytes.size() ? std::to_integer<unsigned>(m_bytes[offset]) : 0;
@@ -28,6 +26,10 @@ private:
 };
 
 } // namespace
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find_first_of("\r\n"));
+}
 
 void refuse_choice(const ImageChoice& choice) {
   if (!choice.layer.empty() || !choice.part.empty())

@@ -12,7 +12,8 @@
 
 namespace haarlight::probe::reader {
 
-/// A file that is not decoded; what() says why, as the rest of a sentence that begins with the file.
+/// A file that is not decoded; what() says why, as the rest of a sentence that begins with the
+/// file.
 class Refusal : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
@@ -38,6 +39,9 @@ Picture read_jpeg(const Task& task);
 
 /// Lets the process allocate this much more from now on.
 void allow_memory(std::uint64_t bytes);
+
+/// Messages of libraries may have several lines; the first states the error.
+std::string first_line(const std::string& text);
 
 /// @throws Refusal if the format has neither layers nor parts and one was chosen
 void refuse_choice(const ImageChoice& choice);

@@ -133,13 +133,12 @@ Encoding encoding_of(const PngFile& file) {
   double gamma = 0;
   const bool has_gamma = ::png_get_gAMA(file.png, file.info, &gamma) != 0 && gamma > 0;
   Encoding encoding =
-      has_gamma && gamma == 1
-          ? linear_encoding("values are linear, as its gAMA chunk states")
+      has_gamma && gamma == 1 ? linear_encoding("values are linear, as its gAMA chunk states")
       : has_gamma ? power_encoding(1 / gamma, "values were decoded by the gamma of its gAMA chunk")
                   : srgb_encoding("values were decoded as sRGB; the file states no encoding");
   double c[8] = {};
-  if (::png_get_cHRM(file.png, file.info, &c[0], &c[1], &c[2], &c[3], &c[4], &c[5], &c[6],
-                     &c[7]) != 0)
+  if (::png_get_cHRM(file.png, file.info, &c[0], &c[1], &c[2], &c[3], &c[4], &c[5], &c[6], &c[7]) !=
+      0)
     set_primaries(encoding, {{c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]}, {c[0], c[1]}});
   if (encoding.matrix)
     encoding.note += ", colours converted from the primaries of its cHRM chunk";

@@ -261,7 +261,7 @@ SampleLayout layout_of(TIFF* tiff, const TiffHeader& h) {
   std::uint16_t* types = nullptr;
   ::TIFFGetFieldDefaulted(tiff, TIFFTAG_EXTRASAMPLES, &count, &types);
   if (h.samples > layout.colours && count > 0 && types != nullptr)
-    layout.alpha = types[0] == EXTRASAMPLE_UNASSALPHA ? Alpha::Unassociated
+    layout.alpha = types[0] == EXTRASAMPLE_UNASSALPHA   ? Alpha::Unassociated
                    : types[0] == EXTRASAMPLE_ASSOCALPHA ? Alpha::Associated
                                                         : Alpha::None;
   return layout;
@@ -307,8 +307,8 @@ Picture read_samples(TIFF* tiff, const TiffHeader& h) {
   return picture;
 }
 
-/// LogLuv and LogL: CIE XYZ, or Y alone, as floats (G. Ward Larson, "LogLuv Encoding for Full-Gamut,
-/// High-Dynamic Range Images", 1998).
+/// LogLuv and LogL: CIE XYZ, or Y alone, as floats (G. Ward Larson, "LogLuv Encoding for
+/// Full-Gamut, High-Dynamic Range Images", 1998).
 Picture read_log(TIFF* tiff, TiffHeader h) {
   ::TIFFSetField(tiff, TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT);
   h.samples = h.photometric == PHOTOMETRIC_LOGLUV ? 3 : 1;
@@ -384,10 +384,11 @@ Picture decode(TIFF* tiff, const TiffHeader& h) {
   if (h.format == SAMPLEFORMAT_UINT && h.bits <= 8 &&
       (small_grey || h.photometric == PHOTOMETRIC_PALETTE || h.photometric == PHOTOMETRIC_YCBCR))
     return read_display(tiff, h);
-  throw Refusal("has " + std::to_string(h.samples) + " samples of " + std::to_string(h.bits) +
-                " bits (SampleFormat " + std::to_string(h.format) + ", Photometric " +
-                std::to_string(h.photometric) +
-                "); grey and RGB of 8, 16 or 32 bits or floats, palettes, YCbCr and LogLuv are read");
+  throw Refusal(
+      "has " + std::to_string(h.samples) + " samples of " + std::to_string(h.bits) +
+      " bits (SampleFormat " + std::to_string(h.format) + ", Photometric " +
+      std::to_string(h.photometric) +
+      "); grey and RGB of 8, 16 or 32 bits or floats, palettes, YCbCr and LogLuv are read");
 }
 
 } // namespace
@@ -406,7 +407,8 @@ Picture read_tiff(const Task& task) {
   check_pixels(header.width, header.height);
   const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
   const std::uint64_t raw = pixels * header.samples * std::max<std::uint64_t>(header.bits, 8) / 8;
-  check_file_size(task, pixels * header.samples * header.bits / 8, largest_ratio(header.compression));
+  check_file_size(task, pixels * header.samples * header.bits / 8,
+                  largest_ratio(header.compression));
   allow_memory(2 * 12 * pixels + 4 * raw);
   Picture picture = decode(tiff.get(), header);
   picture.image = upright(std::move(picture.image), header.orientation);

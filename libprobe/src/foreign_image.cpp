@@ -84,9 +84,9 @@ ForeignImage read_foreign_image(const std::string& path, PictureFormat format,
   if (file.value < 0 || ::fstat(file.value, &status) != 0)
     throw_input_error(path, "cannot be opened again");
   const std::uint64_t seconds = cpu_seconds(static_cast<std::uint64_t>(status.st_size));
-  ReaderProcess reader(
-      file.value, {format_name(format), choice.layer, choice.part, std::to_string(seconds)},
-      std::chrono::seconds(wall_factor * seconds));
+  ReaderProcess reader(file.value,
+                       {format_name(format), choice.layer, choice.part, std::to_string(seconds)},
+                       std::chrono::seconds(wall_factor * seconds));
   ReaderResult result = receive(reader);
   const std::string death = reader.finish();
   if (!death.empty() && !(result.complete && !result.error.empty()))

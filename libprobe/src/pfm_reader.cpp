@@ -64,8 +64,7 @@ private:
     const std::string_view word = next_word();
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size() || value < 1 ||
-        value > max_pixels)
+    if (error != std::errc{} || end != word.data() + word.size() || value < 1 || value > max_pixels)
       fail(std::string("the ") + name + " must be a number from 1 to " +
            std::to_string(max_pixels));
     return value;

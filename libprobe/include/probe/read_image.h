@@ -24,12 +24,13 @@ struct ImageChoice {
 
 /// Reads Radiance RGBE, OpenEXR, PFM, TIFF, PNG and JPEG, known by their content. Grey becomes RGB;
 /// values encoded for display are made linear, other primaries are converted to Rec. 709,
-/// orientation tags are obeyed; negative values are set to 0. Notes state what was done. OpenEXR: the
-/// data window is placed in the display window. Formats other than RGBE and PFM are decoded by a
-/// separate program with limits of memory and time.
-/// @throws Error(Input) if the file is missing, of no accepted format, damaged, truncated, too large,
-///         ambiguous (several layers or parts hold colours and none is chosen), or holds a NaN or an
-///         infinity, whose pixel is named; std::runtime_error if the program cannot be started
+/// orientation tags are obeyed; negative values are set to 0. Notes state what was done. OpenEXR:
+/// the data window is placed in the display window. Formats other than RGBE and PFM are decoded by
+/// a separate program with limits of memory and time.
+/// @throws Error(Input) if the file is missing, of no accepted format, damaged, truncated, too
+/// large,
+///         ambiguous (several layers or parts hold colours and none is chosen), or holds a NaN or
+///         an infinity, whose pixel is named; std::runtime_error if the program cannot be started
 LoadedImage read_image(const std::string& path, const ImageChoice& choice = {});
 
 /// What read_image does to pixels: refuses NaN and infinities, clamps negative values.
