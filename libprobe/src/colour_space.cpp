@@ -59,9 +59,12 @@ Chromaticities aces_chromaticities() {
 Eigen::Vector3d icc_white() { return {0.9642, 1, 0.8249}; }
 
 Eigen::Array3d rec709_from_xyz(const Eigen::Array3d& v) {
-  return {3.2404542 * v[0] - 1.5371385 * v[1] - 0.4985314 * v[2],
-          -0.9692660 * v[0] + 1.8760108 * v[1] + 0.0415560 * v[2],
-          0.0556434 * v[0] - 0.2040259 * v[1] + 1.0572252 * v[2]};
+  Eigen::Array3d rgb;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto& row = xyz_to_rec709[c];
+    rgb[static_cast<Eigen::Index>(c)] = row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
+  }
+  return rgb;
 }
 
 Eigen::Matrix3d rec709_from_adapted_xyz(const Eigen::Vector3d& white) {
