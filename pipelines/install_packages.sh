@@ -4,7 +4,7 @@
 set -euo pipefail
 
 packages="g++ cmake ninja-build make pkg-config zstd
-  libopenimageio-dev libopenexr-dev libeigen3-dev libxxhash-dev libpng-dev
+  libopenexr-dev libeigen3-dev libxxhash-dev libpng-dev libjpeg-dev libtiff-dev
   libcli11-dev nlohmann-json3-dev catch2 libzstd-dev libgsl-dev libbenchmark-dev
   libepoxy-dev libegl-dev libegl1 libgles2 libgl1-mesa-dri libglfw3-dev libimgui-dev xvfb"
 if [ "${1:-build}" = check ]; then

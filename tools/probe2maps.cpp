@@ -18,12 +18,14 @@ using MappingChoice = std::optional<probe::Mapping>;
 struct Options {
   std::string input;
   MappingChoice mapping;
+  probe::ImageChoice image;
   probe::MapOptions maps;
   tool::MapOutput output;
 };
 
 void declare(tool::Tool& app, Options& o) {
-  app.input(o.input, "IN", "Light probe: Radiance RGBE, OpenEXR, PFM or what OpenImageIO reads");
+  app.input(o.input, "IN",
+            "Light probe: Radiance RGBE, OpenEXR, PFM, TIFF, PNG or JPEG, known by its content");
   tool::add_map_output(app, o.output);
   app.value(o.maps.size, "--size",
             "Pixels along a map's side, a power of two from 4; 0 = 512 to 2048, losing nothing, or "
@@ -40,6 +42,11 @@ void declare(tool::Tool& app, Options& o) {
               {"mirrorball", probe::Mapping::MirrorBall},
               {"octahedral", probe::Mapping::Octahedral}},
              "How the picture shows the sphere; auto judges by aspect and content");
+  app.text(o.image.layer, "--layer", "NAME",
+           "Layer of an OpenEXR file: the channels NAME.R, NAME.G, NAME.B or NAME.Y. Default: R, "
+           "G, B without a layer, else the only layer with these, else Y");
+  app.text(o.image.part, "--part", "N|NAME",
+           "Part of an OpenEXR file by name or number, page of a TIFF file by number; from 0");
 }
 
 void check(const probe::MapOptions& maps) {
@@ -63,7 +70,7 @@ std::uint64_t map_bytes(int size) {
 int make_maps(const tool::Tool& app, const Options& options) {
   check(options.maps);
   const probe::LoadedProbe loaded = with_memory_for("the pixels of " + options.input, 0, [&] {
-    return probe::read_probe(options.input, options.mapping);
+    return probe::read_probe(options.input, options.mapping, probe::Lookup::Nearest, options.image);
   });
   app.note(options.input + ": " + loaded.mapping_reason);
   for (const std::string& note : loaded.notes)

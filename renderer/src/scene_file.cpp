@@ -86,13 +86,19 @@ CameraDescription read_camera(const SceneNode& node) {
 }
 
 LightDescription read_light(const SceneNode& node, const Folder& folder) {
-  node.allow({"probe", "haar", "table", "mapping", "rotate", "background"});
+  node.allow({"probe", "layer", "part", "haar", "table", "mapping", "rotate", "background"});
   LightDescription light;
   light.probe = folder.file(node, "probe");
   light.haar = folder.file(node, "haar");
   light.table = folder.file(node, "table");
   if (light.probe.empty() && light.haar.empty() && light.table.empty())
     node.fail("needs at least one of the keys probe, haar, table");
+  for (const auto& [key, text] : {std::pair("layer", &light.layer), std::pair("part", &light.part)})
+    if (const auto choice = node.find(key)) {
+      if (light.probe.empty())
+        choice->fail("belongs to a \"probe\", which is missing");
+      *text = choice->text();
+    }
   if (const auto mapping = node.find("mapping"))
     light.mapping =
         mapping->choice("mapping", {"auto", "angular", "latlong", "mirrorball", "octahedral"});
