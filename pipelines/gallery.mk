@@ -48,4 +48,5 @@ $(gallery_pictures): $(folder)%.exr: $(folder)scene/%.json $(sources) $(trees)
 
 gallery_sheet: $(gallery_pictures)
 	$(step) update $(folder)gallery.png -- $^ -- haarsheet $^ $(foreach name,$(names),--caption $(name)) \
-	  --columns 3 --tone-map filmic -o $(folder)gallery.png; publish $(folder)gallery.png "$$sheet"
+	  --columns 3 --tone-map filmic -o $(folder)gallery.png; \
+	publish $(folder)gallery.png "$${sheet:-$(folder)gallery.png}"

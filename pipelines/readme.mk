@@ -10,14 +10,17 @@ folder := gallery/
 include $(here)/gallery.mk
 
 views := lamp.exr level.exr environment.exr
-.PHONY: demo gallery/scene/viewer.json $(views) viewer.png light.haar turning.png
-readme: demo gallery viewer.png turning.png
+.PHONY: demo gallery_picture gallery/scene/viewer.json $(views) viewer.png light.haar turning.png
+readme: demo gallery_picture viewer.png turning.png
 
 # Uses the programs in build/release, which it builds first.
 demo:
 	$(step) update demo/demo.png demo/contact-sheet.png -- "$$here/demo.sh" "$$bin/haarrender" -- \
 	  bash "$$here/demo.sh" "$$out/demo"; \
 	publish demo/demo.png "$$pictures/demo.png"; publish demo/contact-sheet.png "$$pictures/samplers.png"
+
+gallery_picture: gallery_sheet
+	$(step) cd -- "$$out"; publish gallery/gallery.png "$$pictures/gallery.png"
 
 # The BRDFs and probes of the gallery are in the scene below, too.
 gallery/scene/viewer.json: $(sources) $(trees)

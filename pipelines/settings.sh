@@ -252,9 +252,7 @@ keep_maps=$(text KEEP_MAPS) && keep_maps=${keep_maps#0}
 path bin BIN "$here/../build/release/bin"
 path scene SCENE "$here/scenes/sphere${tables:+_tables}.json"
 path pictures PICTURES "$here/pictures"
-default_sheet=$out/gallery.png
-[ "$goals" != " readme " ] || default_sheet=$pictures/gallery.png
-path sheet SHEET "$default_sheet"
+path sheet SHEET ""
 split brdf_words "$(text BRDF)"
 split probe_words "$(text PROBE)"
 
@@ -264,7 +262,7 @@ case $goals in
 *" clean "*) required=("$out") ;;
 esac
 for word in "${required[@]}" "$out" "$pictures" "$sheet"; do
-  [[ $word == /* ]] || { find_caller "${required[@]}" && break; }
+  [[ $word == /* || -z $word ]] || { find_caller "${required[@]}" && break; }
 done
 out=$(absolute "$out")
 [ ! -e "$out" ] || [ -d "$out" ] || refuse "OUT: $out: not a folder"
@@ -276,7 +274,7 @@ put out "$out"
 put bin "$bin"
 put scene "$scene"
 put pictures "$(absolute "$pictures")"
-put sheet "$(absolute "$sheet")"
+put sheet "${sheet:+$(absolute "$sheet")}"
 sampler=$(text SAMPLER) && put sampler "${sampler:-product}"
 given=$(text SPP) && put spp "${given:-${spp:-16}}"
 threads=$(text THREADS) && put threads "$threads"
