@@ -67,7 +67,7 @@ double shaded_truth(const LoadedScene& scene, const ShadingPoint& point,
 
 /// Whether runs of `count` samples draw the density that the sampler states for them.
 void check_density_of_runs(const Sampler& density, Sampler& sampler, std::size_t count) {
-  const std::size_t total = 24000 / count * count;
+  const std::size_t total = 12000 / count * count;
   std::vector<DirectionSample> samples(total);
   for (std::size_t i = 0; i < total; i += count)
     sampler.sample({Points::Random, hash_words(23, static_cast<std::uint32_t>(i)), 0},
@@ -75,7 +75,7 @@ void check_density_of_runs(const Sampler& density, Sampler& sampler, std::size_t
   for (std::size_t i = 0; i < total; i += 97)
     CHECK(density.pdf(samples[i].direction, count) == Approx(samples[i].pdf).epsilon(1e-3));
   const auto result = chi_square(
-      static_cast<int>(total), 32, 8,
+      static_cast<int>(total), 16, 16,
       [&](int i) {
         return wavelet::sphere_to_square(samples[static_cast<std::size_t>(i)].direction);
       },
@@ -98,7 +98,11 @@ public:
     image.set(0, 0, Rgb(1, 2, 3));
     image.set(1, 0, Rgb(20, 12, 16));
     probe::write_rgbe(file("two.hdr"), image);
-    const probe::Probe source(image, probe::Mapping::LatLong);
+    probe::Image fine(64, 32); // the same light, for its trees
+    for (int y = 0; y < fine.height; ++y)
+      for (int x = 0; x < fine.width; ++x)
+        fine.set(x, y, image.at(x / 32, 0));
+    const probe::Probe source(fine, probe::Mapping::LatLong);
     probe::MapOptions options;
     options.size = 32;
     write_haar(file("two.haar"), probe::ProbeMaps(source, options));
@@ -136,7 +140,7 @@ double quadrature(const LoadedScene& scene, const ShadingPoint& point) {
 /// Root mean square of the relative error over some keys.
 double error_of(const LoadedScene& scene, const ShadingPoint& point, Sampler& sampler, Points kind,
                 std::size_t count, double truth) {
-  constexpr std::uint32_t keys = 8;
+  constexpr std::uint32_t keys = 6;
   double sum = 0;
   for (std::uint32_t key = 0; key < keys; ++key) {
     const double x = estimate(scene, point, sampler, {kind, hash_words(3, key), 0}, count);
@@ -162,18 +166,18 @@ TEST_CASE("mixtures draw the density they state, however few the samples") {
 }
 
 TEST_CASE("few samples are unbiased, and no less efficient each than many") {
-  const Vec3 normals[] = {Vec3(0, 1, 0), Vec3(0.6F, 0.64F, 0.48F), Vec3(0, 0.28F, 0.96F)};
+  const Vec3 normals[] = {Vec3(0, 1, 0), Vec3(0.6F, 0.64F, 0.48F)};
   for (const char* material : {"rough", "glossy"})
-    for (const SamplerKind kind : mixtures)
+    for (const SamplerKind kind : mixtures) {
+      const LoadedScene scene(crowded(material), {}, kind, false);
+      const auto sampler = make_sampler_factory(kind, scene, {})->make(4);
       for (const Vec3& n : normals) {
-        const LoadedScene scene(crowded(material), {}, kind, false);
         const ShadedPoint shaded(n);
-        const auto sampler = make_sampler_factory(kind, scene, {})->make(4);
         sampler->prepare(shaded.point, scene.materials()[0]);
         const double truth = shaded_truth(scene, shaded.point, probe_of(crowded(material)));
         const double many = 64 * runs_of(scene, shaded.point, *sampler, 64, 64).variance;
         for (const std::size_t count : {1U, 2U, 3U, 4U, 5U}) {
-          const std::size_t runs = 4096 / count;
+          const std::size_t runs = 2048 / count;
           const Runs few = runs_of(scene, shaded.point, *sampler, count, runs);
           INFO(sampler_name(kind) << ", " << material << " at " << n.transpose() << ", " << count
                                   << " samples: " << few.mean << ", not " << truth
@@ -186,6 +190,7 @@ TEST_CASE("few samples are unbiased, and no less efficient each than many") {
           CHECK(static_cast<double>(count) * few.variance < 2 * many + 0.75 * truth * truth);
         }
       }
+    }
 }
 
 TEST_CASE("every sampler converges under a light of two pixels, random or Sobol") {

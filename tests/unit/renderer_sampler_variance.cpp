@@ -10,7 +10,7 @@ using namespace haarlight::renderer;
 
 namespace {
 
-constexpr std::uint32_t runs = 1500;
+constexpr std::uint32_t runs = 800;
 
 struct Variances {
   double reported = 0; ///< mean over the runs
@@ -29,8 +29,7 @@ struct ShadedPoint {
 /// One pixel's sums over `count` samples.
 PixelSums sums_of(const LoadedScene& scene, Sampler& sampler, const ShadingPoint& point,
                   std::size_t count, std::uint32_t key) {
-  static std::vector<DirectionSample> samples;
-  samples.assign(count, {});
+  std::vector<DirectionSample> samples(count);
   sampler.sample({Points::Random, key, 0}, samples);
   std::vector<Vec3> directions;
   for (const DirectionSample& s : samples)
@@ -78,8 +77,8 @@ void check_variance(SamplerKind kind, const char* material, std::size_t count,
   INFO(sampler_name(kind) << ", " << material << ", " << count << " samples, "
                           << estimator_name(estimator) << ": " << v.reported << " reported, "
                           << v.actual);
-  // 1500 runs know a variance to 4 % if weights have a kurtosis of 3, and less well otherwise.
-  CHECK(v.reported == Approx(v.actual).epsilon(0.15).margin(1e-12));
+  // 800 runs know a variance to 5 % if weights have a kurtosis of 3, and less well otherwise.
+  CHECK(v.reported == Approx(v.actual).epsilon(0.2).margin(1e-12));
 }
 
 } // namespace
