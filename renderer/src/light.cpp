@@ -73,9 +73,9 @@ void Light::need_distribution() {
     m_distribution.emplace(*m_probe);
 }
 
-wavelet::Map Light::map(int most) const {
+wavelet::Map Light::map(int most, int least) const {
   if (m_probe) {
-    int size = 4;
+    int size = least;
     while (size < most && size < 2 * m_probe->height())
       size *= 2;
     return probe::world_map(*m_probe, size, probe::MapOptions{}.supersample);

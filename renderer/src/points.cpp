@@ -52,11 +52,13 @@ class PointSet {
 public:
   PointSet(Points kind, std::uint32_t key)
       : m_kind(kind), m_key(key), m_seed_x(hash_words(key, 0x1234567U)),
-        m_seed_y(hash_words(key, 0x7654321U)) {}
+        m_seed_y(hash_words(key, 0x7654321U)), m_seed_order(hash_words(key, 0x5f3759dU)) {}
 
   Vec2 point(std::uint32_t index) const {
     if (m_kind == Points::Random)
       return random_point(m_key, index);
+    // Nested: a permutation of whole aligned runs, within which runs half as long are permuted.
+    index = reverse_bits(scramble_reversed(reverse_bits(index), m_seed_order));
     // The first dimension is the reversed index, so the index is the first dimension reversed.
     return {to_unit(reverse_bits(scramble_reversed(index, m_seed_x))),
             to_unit(reverse_bits(scramble_reversed(sobol_second_reversed(index), m_seed_y)))};
@@ -67,6 +69,7 @@ private:
   std::uint32_t m_key;
   std::uint32_t m_seed_x;
   std::uint32_t m_seed_y;
+  std::uint32_t m_seed_order;
 };
 
 } // namespace
@@ -79,16 +82,6 @@ void fill_points(Points kind, std::uint32_t key, std::uint32_t first, std::span<
   const PointSet set(kind, key);
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = set.point(first + static_cast<std::uint32_t>(i));
-}
-
-void fill_shuffled_points(Points kind, std::uint32_t key, std::uint32_t first,
-                          std::span<Vec2> out) {
-  const PointSet set(kind, key);
-  const std::uint32_t order = hash_words(key, 0x5f3759dU);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::uint32_t index = first + static_cast<std::uint32_t>(i);
-    out[i] = set.point(reverse_bits(scramble_reversed(reverse_bits(index), order)));
-  }
 }
 
 } // namespace haarlight::renderer
