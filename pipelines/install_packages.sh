@@ -8,7 +8,7 @@ packages="g++ cmake ninja-build make pkg-config zstd
   libcli11-dev nlohmann-json3-dev catch2 libzstd-dev libgsl-dev libbenchmark-dev
   libepoxy-dev libegl-dev libegl1 libgles2 libgl1-mesa-dri libglfw3-dev libimgui-dev xvfb"
 if [ "${1:-build}" = check ]; then
-  packages="$packages clang-format clang-tidy clang libclang-rt-14-dev shellcheck"
+  packages="$packages clang-format clang-tidy clang libclang-rt-14-dev shellcheck libopenimageio-dev"
 fi
 
 missing=""
