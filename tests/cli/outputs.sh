@@ -204,7 +204,7 @@ starved 400000 probe2maps probe.hdr --size 8192 -o a.exr
 grep -q 'MiB for a map of 8192 x 8192 pixels' "$log/err" || fail "the purpose is missing: $(cat "$log/err")"
 starved 400000 probe2maps probe.hdr --size 8192 -o a.haar
 grep -q 'MiB for a map of 8192 x 8192 pixels' "$log/err" || fail "the purpose is missing: $(cat "$log/err")"
-starved 400000 haarrender scene.json --spp 1 --size 8192x8192 -o a.exr
+starved 400000 haarrender scene.json --spp 1 --size 8192x8192 --force -o a.exr
 says "a film of 8192 x 8192 pixels"
 leaves "${inputs[@]}"
 finish
