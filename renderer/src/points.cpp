@@ -29,15 +29,14 @@ std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
 }
 
 /// Second dimension of Sobol's sequence, bit-reversed: Pascal's triangle modulo 2 applied to the
-/// index.
+/// index. As a polynomial over GF(2) with the index's bits as coefficients it is p(1 + x), found by
+/// halves: with p = l + x^m h and m a power of two, p(1 + x) = l(1 + x) + (1 + x^m) h(1 + x).
 std::uint32_t sobol_second_reversed(std::uint32_t index) {
-  std::uint32_t result = 0;
-  for (std::uint32_t column = 1U; index != 0; index >>= 1U) {
-    if ((index & 1U) != 0)
-      result ^= column;
-    column ^= column << 1U;
-  }
-  return result;
+  index ^= index >> 16U;
+  index ^= (index >> 8U) & 0x00ff00ffU;
+  index ^= (index >> 4U) & 0x0f0f0f0fU;
+  index ^= (index >> 2U) & 0x33333333U;
+  return index ^ ((index >> 1U) & 0x55555555U);
 }
 
 float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8U) * 0x1p-24F; }

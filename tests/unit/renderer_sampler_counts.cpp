@@ -3,6 +3,8 @@
 #include "crowded_scene.h"
 #include "sampler_checks.h"
 
+#include <renderer/render.h>
+
 using namespace haarlight;
 using namespace haarlight::renderer;
 
@@ -212,4 +214,37 @@ TEST_CASE("every sampler converges under a light of two pixels, random or Sobol"
       CHECK(many < std::max(0.25 * few, floor));
     }
   }
+}
+
+TEST_CASE("an unoccluded pixel is exactly the product's integral, whatever the directions") {
+  SceneDescription description = fixture().scene("glossy", "spheres");
+  description.camera.projection = Projection::Orthographic;
+  description.camera.from = Vec3(0, 1, 5);
+  description.camera.height = 2.2;
+  const LoadedScene scene(description, {}, SamplerKind::Product, true);
+  RenderOptions options;
+  options.estimator = Estimator::Ratio;
+  options.spp = 64;
+  options.sampling.product.variance_bound = 0.05F;
+  const Film many = render(scene, options, 16, 16).film;
+  options.estimator = Estimator::Bidirectional;
+  for (const int spp : {1, 2, 5}) {
+    options.spp = spp;
+    options.seed = static_cast<std::uint32_t>(spp);
+    const Film few = render(scene, options, 16, 16).film;
+    float worst = 0;
+    for (std::size_t i = 0; i < few.count(); ++i)
+      worst = std::max(worst, (few.color(i) - many.color(i)).abs().maxCoeff() /
+                                  std::max(1e-6F, many.color(i).maxCoeff()));
+    CHECK(worst < 1e-4F);
+  }
+}
+
+TEST_CASE("product-visibility resolves lobes at few samples as well") {
+  const SceneDescription description = crowded("glossy");
+  const LoadedScene scene(description, {}, SamplerKind::ProductVisibility, false);
+  const auto sampler = make_sampler_factory(SamplerKind::ProductVisibility, scene, {})->make(1);
+  const ShadedPoint shaded(Vec3(0.6F, 0.64F, 0.48F));
+  sampler->prepare(shaded.point, scene.materials()[0]);
+  CHECK(sampler->leaves() > 100);
 }

@@ -32,7 +32,7 @@ void declare_sampling(Tool& app, RenderOptions& render) {
             "times), and 0.001 for bidirectional and ratio",
             0, 100);
   app.value(render.sampling.product.max_leaves, "--product-leaves",
-            "Leaves of a product at most; product-visibility takes 25 for each sample at most "
+            "Leaves of a product at most; product-visibility takes 25 for each sample at most, or 400 "
             "where there may be shadows",
             64, 1 << 20);
   app.value(render.sampling.product.drift_bound, "--product-drift",
