@@ -52,7 +52,7 @@ for delay in 0.01 0.02 0.03 0.04 0.06 0.08; do
     echo old >out.haar
     LD_PRELOAD=$refusals REFUSE=$refuse stopped TERM $delay brdf2maps brdf.binary -q --size 32 --theta 8 \
       --conservation-tolerance 1 -o out.haar
-    [ "$(cat out.haar 2>/dev/null | head -c 4)" = "old" ] || same out.haar new.haar
+    [ "$(head -c 4 out.haar 2>/dev/null)" = "old" ] || same out.haar new.haar
     leaves "${inputs[@]}" out.haar new.haar
   done
 done
@@ -62,7 +62,7 @@ rm new.haar
 stopped KILL 0.3 brdf2maps "${long[@]}" -o out.haar
 leaves "${inputs[@]}" out.haar
 LD_PRELOAD=$refusals REFUSE=tmpfile stopped KILL 1.5 brdf2maps "${long[@]}" -o out.haar
-leftover=$(ls -A | grep '^\.haarlight-tmp\.')
+leftover=$(find . -maxdepth 1 -name '.haarlight-tmp.*' -printf '%f\n')
 [ -n "$leftover" ] || fail "a killed run leaves no recognisable temporary: $(ls -A)"
 other=${leftover/tmp.$(hostname)/tmp.another-host}
 live=${leftover%?????}fffff

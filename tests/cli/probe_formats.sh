@@ -5,7 +5,7 @@ ulimit -c 0
 
 # pfm END: a 4x4 image of ones whose header lines end so
 pfm() {
-  printf "PF${1}4 4${1}-1.0${1}"
+  printf 'PF%b4 4%b-1.0%b' "$1" "$1" "$1"
   printf '\0\0\200\77%.0s' $(seq 48)
 }
 pfm '\n' >lf.pfm

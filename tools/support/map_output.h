@@ -19,7 +19,7 @@ struct MapOutput {
   wavelet::CompressOptions compression;
   std::optional<double> tolerance;      ///< of thresholding, if given on the command line
   std::optional<int> keep;              ///< likewise
-  bool force = false; ///< start even if the output is estimated not to fit
+  bool force = false;                   ///< start even if the output is estimated not to fit
   double conservation_tolerance = 0.01; ///< largest relative error of the set's total luminance
 };
 

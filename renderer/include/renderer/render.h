@@ -26,7 +26,7 @@ enum class Estimator {
   Bidirectional, ///< L_ns · mean(v), the paper's eq. 9: directions must follow the product. v
                  ///< counts occluders alone, whatever f_r is; directions below the horizon are left
                  ///< out
-  Ratio ///< L_ns · Σ w v / Σ w, w = f_r L cos / p (Heitz, Hill and McGuire 2018)
+  Ratio          ///< L_ns · Σ w v / Σ w, w = f_r L cos / p (Heitz, Hill and McGuire 2018)
 };
 
 /// As on the command line: unbiased, bidirectional, ratio.
