@@ -3,23 +3,18 @@
 
 #include <probe/probe.h>
 
+#include <vector>
+
 namespace haarlight::probe {
 
-/// What a pixel shows beyond its surroundings; to be spread by area instead of being sampled.
-struct Peak {
+/// A pixel of a probe's picture.
+struct PixelPlace {
   int x = 0;
   int y = 0;
-  Rgb excess;
 };
 
-/// A probe taken apart: base + peaks = the probe.
-struct SplitProbe {
-  std::vector<float> base; ///< four floats for each pixel, row by row
-  std::vector<Peak> peaks;
-};
-
-/// The base is nowhere brighter than three times the mean of the 24 pixels around: lights of one or
-/// two pixels become peaks, wider ones stay, as do edges.
-SplitProbe split_peaks(const Probe& probe);
+/// The pixels brighter than three times the mean of the 24 around them, row by row: lights of one
+/// or two pixels and the corners of wider ones.
+std::vector<PixelPlace> find_peaks(const Probe& probe);
 
 } // namespace haarlight::probe

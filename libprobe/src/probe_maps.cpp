@@ -2,6 +2,7 @@
 
 #include "map_rotation.h"
 
+#include <wavelet/error.h>
 #include <wavelet/sphere_map.h>
 
 #include <algorithm>
@@ -37,6 +38,10 @@ int default_map_size(const Probe& probe, int orientations) {
 
 ProbeMaps::ProbeMaps(const Probe& probe, const MapOptions& options, const Provenance& source)
     : m_options(options), m_integral(probe.integral()) {
+  if (!m_integral.allFinite())
+    throw_input_error(probe.path(), "holds radiances whose integral over the sphere exceeds the "
+                                    "largest single-precision number; the picture must be scaled "
+                                    "down");
   if (m_options.size == 0)
     m_options.size = default_map_size(probe, m_options.orientations);
   assert(m_options.size >= 4 && m_options.orientations >= 1 && m_options.supersample >= 1);

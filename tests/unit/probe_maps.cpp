@@ -6,7 +6,9 @@
 #include <wavelet/parallel.h>
 #include <wavelet/sphere_map.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 using namespace haarlight;
@@ -131,6 +133,130 @@ TEST_CASE("A constant probe gives constant maps", "[maps]") {
     for (const float value : map.rgb)
       REQUIRE(value == Approx(2));
   }
+}
+
+namespace {
+
+constexpr Mapping all_mappings[] = {Mapping::Angular, Mapping::LatLong, Mapping::MirrorBall,
+                                    Mapping::Octahedral};
+
+/// Mean of the nearest look-up over each map pixel, by `along`² points on a rank-1 lattice each.
+wavelet::Map looked_up_map(const Probe& probe, int size, int along) {
+  wavelet::Map map(size);
+  const int count = along * along;
+  parallel_for(static_cast<std::size_t>(size), [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < size; ++x) {
+      Rgb sum(0, 0, 0);
+      for (int k = 0; k < count; ++k) {
+        const double s = (k + 0.5) / count;
+        const double t = k * 0.6180339887498949;
+        const Vec2 square((static_cast<float>(x + s)) / static_cast<float>(size),
+                          (static_cast<float>(y + t - std::floor(t))) / static_cast<float>(size));
+        sum += probe.radiance(wavelet::square_to_sphere(square));
+      }
+      map.set(x, y, sum / static_cast<float>(count));
+    }
+  });
+  return map;
+}
+
+float relative_l2(const wavelet::Map& map, const wavelet::Map& reference) {
+  double error = 0;
+  double norm = 0;
+  for (std::size_t i = 0; i < map.rgb.size(); ++i) {
+    error += std::pow(double{map.rgb[i]} - reference.rgb[i], 2);
+    norm += std::pow(double{reference.rgb[i]}, 2);
+  }
+  return static_cast<float>(std::sqrt(error / norm));
+}
+
+float largest(const std::vector<float>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+/// A dark noise with pixels of 100 at some places: alone, in pairs, in blocks, at every border.
+Image spotted(Mapping mapping, int size) {
+  Image image = blank(mapping, size);
+  std::mt19937 random(static_cast<unsigned>(size));
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const bool bright = uniform(random) < 0.1F || (x >= 3 && x < 6 && y >= 2 && y < 4);
+      image.set(x, y, bright ? Rgb(100, 50, 25) : Rgb::Constant(uniform(random)));
+    }
+  return image;
+}
+
+} // namespace
+
+TEST_CASE("Constant probes of any size give constant maps", "[maps]") {
+  for (const Mapping mapping : all_mappings)
+    for (const int size : {1, 2, 3, 16, 300})
+      for (const int map_size : {4, 32}) {
+        Image image = blank(mapping, size);
+        std::fill(image.rgb.begin(), image.rgb.end(), 2.0F);
+        const wavelet::Map map = world_map(Probe(image, mapping), map_size, 1);
+        INFO(mapping_name(mapping) << " " << size << " at " << map_size);
+        for (const float value : map.rgb)
+          REQUIRE(value == Approx(2).epsilon(1e-5));
+      }
+}
+
+TEST_CASE("Maps agree with the nearest look-up and are nowhere brighter than it", "[maps]") {
+  for (const Mapping mapping : all_mappings)
+    for (const int size : {1, 2, 8, 31}) {
+      const Image image = spotted(mapping, size);
+      const Probe probe(image, mapping);
+      const wavelet::Map map = world_map(probe, 16, 4);
+      const float difference = relative_l2(map, looked_up_map(probe, 16, size < 31 ? 20 : 40));
+      INFO(mapping_name(mapping) << " " << size);
+      CHECK(difference < 0.012F);
+      CHECK(largest(map.rgb) <= largest(image.rgb) * 1.00001F);
+      // The quadrature of integral() is coarse where the rim crosses every pixel.
+      CHECK(map_integral(map) ==
+            Approx(luminance(probe.integral())).epsilon(size < 8 ? 0.02 : 0.003));
+    }
+}
+
+TEST_CASE("A bright pixel of a coarse probe fills its own area and no other", "[maps]") {
+  for (const Mapping mapping : all_mappings) {
+    Image image = blank(mapping, 8);
+    image.set(image.width / 2, 2, {100, 100, 100});
+    const Probe probe(image, mapping);
+    const wavelet::Map map = world_map(probe, 32, 4);
+    const wavelet::Map reference = looked_up_map(probe, 32, 16);
+    INFO(mapping_name(mapping));
+    CHECK(relative_l2(map, reference) < 0.01F);
+    CHECK(largest(map.rgb) == Approx(100).epsilon(1e-4));
+    for (std::size_t i = 0; i < map.rgb.size(); ++i)
+      REQUIRE(map.rgb[i] == Approx(reference.rgb[i]).margin(5));
+  }
+}
+
+TEST_CASE("Lights of a fine probe are spread by area too", "[maps]") {
+  for (const Mapping mapping : all_mappings) {
+    Image image = blank(mapping, 320);
+    std::mt19937 random(59);
+    for (int i = 0; i < 40; ++i)
+      image.set(static_cast<int>(random() % static_cast<unsigned>(image.width)),
+                static_cast<int>(random() % 320U), {1000, 1000, 1000});
+    const Probe probe(image, mapping);
+    const wavelet::Map map = world_map(probe, 64, 1);
+    INFO(mapping_name(mapping));
+    CHECK(relative_l2(map, looked_up_map(probe, 64, 24)) < 0.1F);
+    CHECK(largest(map.rgb) <= 1000 * 1.00001F);
+    CHECK(map_integral(map) == Approx(luminance(probe.integral())).epsilon(0.002));
+  }
+}
+
+TEST_CASE("The largest radiances do not overflow", "[maps]") {
+  constexpr float most = std::numeric_limits<float>::max();
+  Image image = blank(Mapping::LatLong, 200);
+  std::fill(image.rgb.begin(), image.rgb.end(), most);
+  const wavelet::Map map = world_map(Probe(image, Mapping::LatLong), 16, 4);
+  for (const float value : map.rgb)
+    REQUIRE(value == Approx(most).epsilon(1e-5));
 }
 
 TEST_CASE("Frames of cells", "[maps]") {

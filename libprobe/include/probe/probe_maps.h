@@ -31,10 +31,11 @@ Frame carried_frame(const Frame& frame, const Vec3& w);
 /// across the edges of the probe's, within 512 and 2048; 128 for the maps of a table.
 int default_map_size(const Probe& probe, int orientations);
 
-/// The world-frame map: pixel (x, y) is the average over its square of the probe's radiance, local
-/// axes = world axes. Sampled more densely where the probe's pixels are small; pixels far brighter
-/// than those around them are not left to sampling but spread by area, so that their energy is kept
-/// exactly.
+/// The world-frame map: pixel (x, y) is the average over its square of the probe's radiance
+/// (nearest look-up), local axes = world axes; never brighter than the probe. Small probes, those
+/// whose pixels are large in the map, and all pixels far brighter than those around them are added
+/// by the exact area that they cover of each map pixel. The rest is sampled, more densely where the
+/// probe's pixels are small.
 /// @param size        pixels along a side, a power of two ≥ 4
 /// @param supersample 1 to 64: at least supersample² samples for each pixel
 wavelet::Map world_map(const Probe& probe, int size, int supersample);
@@ -66,6 +67,7 @@ wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size);
 class ProbeMaps : public wavelet::MapSource {
 public:
   /// @param source what is known of the probe's origin, the first entries of the set's provenance
+  /// @throws Error(Input) if the probe's integral is beyond float
   ProbeMaps(const Probe& probe, const MapOptions& options, const Provenance& source = {});
 
   const wavelet::SetInfo& info() const override { return m_info; }
