@@ -3,7 +3,6 @@
 #include "mapping_lanes.h"
 #include "pixel_shape.h"
 
-#include <wavelet/error.h>
 #include <wavelet/parallel.h>
 
 #include <algorithm>
@@ -11,6 +10,19 @@
 #include <numeric>
 
 namespace haarlight::probe {
+namespace {
+
+/// Whether nothing of the probe that counts has radiance.
+bool is_black(const Probe& probe) {
+  for (int y = 0; y < probe.height(); ++y)
+    for (int x = 0; x < probe.width(); ++x)
+      if (probe.mean_luminance(x, y) > 0 && probe.pixel_solid_angle(x, y) > 0)
+        return false;
+  return true;
+}
+
+} // namespace
+
 LightDistribution::LightDistribution(const Probe& probe)
     : m_mapping(probe.mapping()), m_width(probe.width()), m_height(probe.height()),
       m_rows(static_cast<std::size_t>(m_height) + 1),
@@ -20,19 +32,20 @@ LightDistribution::LightDistribution(const Probe& probe)
                                                         static_cast<std::size_t>(m_column_parts)) {
   const auto width = static_cast<std::size_t>(m_width);
   std::vector<double> rows(static_cast<std::size_t>(m_height));
+  const bool black = is_black(probe);
   parallel_for(rows.size(), [&](std::size_t y) {
     std::vector<double> weights(width);
-    for (int x = 0; x < m_width; ++x)
-      weights[static_cast<std::size_t>(x)] = probe.mean_luminance(x, static_cast<int>(y)) *
-                                             probe.pixel_solid_angle(x, static_cast<int>(y));
+    for (int x = 0; x < m_width; ++x) {
+      const double radiance = black ? 1.0 : probe.mean_luminance(x, static_cast<int>(y));
+      weights[static_cast<std::size_t>(x)] =
+          radiance * probe.pixel_solid_angle(x, static_cast<int>(y));
+    }
     std::uint32_t* cdf = m_columns.data() + y * (width + 1);
     accumulate(weights, cdf);
     make_guide(cdf, m_column_parts,
                m_column_guide.data() + y * static_cast<std::size_t>(m_column_parts));
     rows[y] = std::accumulate(weights.begin(), weights.end(), 0.0);
   });
-  if (std::accumulate(rows.begin(), rows.end(), 0.0) <= 0)
-    throw_input_error(probe.path(), "is black, a probe must shine somewhere");
   accumulate(rows, m_rows.data());
   make_guide(m_rows.data(), row_parts * m_height, m_row_guide.data());
 }

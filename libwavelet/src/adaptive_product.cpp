@@ -70,6 +70,11 @@ void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
   Float4& floor = m_product.m_rests[0].floor;
   floor = larger(mean * reflectance_floor, Float4{});
   floor[3] = 0;
+  const float light = lane_sum(to_lanes(m_light.mean) * luminance_lanes);
+  const float reflected = lane_sum(mean * luminance_lanes);
+  // Apart, for their product may leave the range of float.
+  const float scale = detail::density_scale(light) * detail::density_scale(reflected);
+  m_product.m_rests[0].weights = luminance_lanes * (scale > 0 ? scale : 1.0F);
 }
 
 const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,
@@ -230,7 +235,7 @@ void AdaptiveProduct::expand(std::size_t node, float threshold) {
     const std::size_t count = std::min(quadrants.size(), m_product.m_nodes.size() - node);
     for (std::size_t i = 0; i < count; ++i)
       see_light(node + i, quadrants[i]);
-    detail::weigh(m_reflectance, m_product.m_rests[0].floor,
+    detail::weigh(m_reflectance, m_product.m_rests[0].floor, m_product.m_rests[0].weights,
                   std::span(m_squares).subspan(node, count), quadrants.data());
     if (m_visibility != nullptr)
       look(node, std::span(quadrants).first(count));

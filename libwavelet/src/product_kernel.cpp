@@ -96,15 +96,15 @@ void set_slopes(Float4 beside, Float4 above, Quadrants& quadrants) {
 
 /// Densities, slopes and errors, from averages of light and reflectance.
 /// @param area of the quadrants if they may be split further, else 0
-void combine(Float4 floor, float area, Quadrants& quadrants) {
+void combine(Float4 floor, Float4 weights, float area, Quadrants& quadrants) {
   auto [lr, lg, lb, l0] = quadrants.light;
   auto [br, bg, bb, deviation] = quadrants.reflectance;
   transpose(lr, lg, lb, l0);
   transpose(br, bg, bb, deviation);
   const Float4 zero = {};
-  const Float4 r = larger(br, zero + floor[0]) * luminance_lanes[0];
-  const Float4 g = larger(bg, zero + floor[1]) * luminance_lanes[1];
-  const Float4 b = larger(bb, zero + floor[2]) * luminance_lanes[2];
+  const Float4 r = larger(br, zero + floor[0]) * weights[0];
+  const Float4 g = larger(bg, zero + floor[1]) * weights[1];
+  const Float4 b = larger(bb, zero + floor[2]) * weights[2];
   const auto density = [x = lr, y = lg, z = lb, zero](Float4 red, Float4 green, Float4 blue) {
     return larger(x * red + y * green + z * blue, zero);
   };
@@ -112,7 +112,8 @@ void combine(Float4 floor, float area, Quadrants& quadrants) {
   quadrants.density = select(above, density(r, g, b), zero);
   set_slopes(density(beside(r), beside(g), beside(b)), density(over(r), over(g), over(b)),
              quadrants);
-  const Float4 relative = deviation / (r + g + b + 1e-30F);
+  const float scale = weights[1] / luminance_lanes[1];
+  const Float4 relative = deviation * scale / (r + g + b + 1e-30F);
   const Float4 variance = relative * relative;
   const Float4 squares =
       quadrants.slope_x * quadrants.slope_x + quadrants.slope_y * quadrants.slope_y;
@@ -127,7 +128,7 @@ float splittable_area(const Pyramid& pyramid, int level) {
 
 } // namespace
 
-HAARLIGHT_CPU_CLONES void weigh(const RotatedReflectance& reflectance, Float4 floor,
+HAARLIGHT_CPU_CLONES void weigh(const RotatedReflectance& reflectance, Float4 floor, Float4 weights,
                                 std::span<const SquarePlace> squares, Quadrants* quadrants) {
   const Pyramid& pyramid = *reflectance.pyramid;
   Lanes lanes;
@@ -136,7 +137,7 @@ HAARLIGHT_CPU_CLONES void weigh(const RotatedReflectance& reflectance, Float4 fl
   pyramid.place(lanes.places, lanes.count);
   for (std::size_t i = 0; i < squares.size(); ++i) {
     look_up(reflectance, lanes, 4 * i, quadrants[i]);
-    combine(floor, splittable_area(pyramid, squares[i].level + 1), quadrants[i]);
+    combine(floor, weights, splittable_area(pyramid, squares[i].level + 1), quadrants[i]);
   }
 }
 

@@ -30,8 +30,9 @@ inline constexpr std::size_t square_batch = 16;
 
 /// Works out all of the quadrants' numbers but their light, which is given.
 /// @param floor   of the reflectance, lanes R, G, B
+/// @param weights of the channels in densities: luminance, scaled
 /// @param squares at most square_batch; as many quadrants
-void weigh(const RotatedReflectance& reflectance, Float4 floor,
+void weigh(const RotatedReflectance& reflectance, Float4 floor, Float4 weights,
            std::span<const SquarePlace> squares, Quadrants* quadrants);
 
 } // namespace haarlight::wavelet::detail

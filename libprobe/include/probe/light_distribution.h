@@ -25,10 +25,11 @@ struct LightSample {
 ///
 /// For a probe with bilinear look-up a pixel's weight is the mean of the interpolated luminance
 /// over it (its neighbours count too), so that the density is positive wherever the radiance is.
+///
+/// Of a black probe all directions are equally likely.
 class LightDistribution {
 public:
   /// Keeps nothing of the probe but its shape.
-  /// @throws Error(Input) if the probe is black
   explicit LightDistribution(const Probe& probe);
 
   /// @param u uniform in [0, 1)²; its y picks the row, its x the column

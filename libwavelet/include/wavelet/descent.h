@@ -8,6 +8,7 @@
 #include <wavelet/tree.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace haarlight::wavelet {
@@ -25,10 +26,11 @@ struct Descent {
 namespace detail {
 
 /// Chooses between two with weights `first` and `second`, not both 0; rescales u. Returns 1 for the
-/// second. Free of branches, which chance would mispredict half of the time.
+/// second. Never chooses a weight of 0, however the product with u is rounded. Free of branches,
+/// which chance would mispredict half of the time.
 inline unsigned choose(float& u, float first, float second) {
   const float t = u * (first + second);
-  const bool beyond = t >= first;
+  const bool beyond = (t >= first) & (second > 0);
   const auto chosen = static_cast<float>(beyond);
   u = std::min((t - chosen * first) / (first + chosen * (second - first)), below_one);
   return beyond ? 1U : 0U;
@@ -69,6 +71,20 @@ inline float quadrant_density(Float4 w, unsigned q) {
 /// The point where a finished descent ends.
 inline Vec2 end_point(const Descent& d) { return {d.x + d.u1 * d.side, d.y + d.u2 * d.side}; }
 
+namespace detail {
+
+/// A power of two by which weights of this mean are multiplied so that neither they nor their sums
+/// leave the range of float: 1 unless they are extreme, since densities depend on ratios alone.
+inline float density_scale(float mean) {
+  constexpr int most = 60; // sums and details of a tree add less than another 2^60
+  if (!(mean > 0) || !std::isfinite(mean))
+    return mean > 0 ? 0x1p-100F : 1.0F;
+  const int exponent = std::ilogb(mean);
+  return std::abs(exponent) <= most ? 1.0F : std::ldexp(1.0F, std::clamp(-exponent, -126, 127));
+}
+
+} // namespace detail
+
 /// A tree, or what lies under one of its squares, as a density: luminance-like weights of colours.
 struct TreeDensity {
   const TreeView* tree = nullptr;
@@ -79,7 +95,9 @@ struct TreeDensity {
 
   /// Density over a whole tree, which must outlive it.
   static TreeDensity of(const TreeView& tree, Float4 weights = luminance_lanes) {
-    return {&tree, tree.root(), lane_sum(to_lanes(tree.mean) * weights), weights, {}};
+    const Float4 mean = to_lanes(tree.mean);
+    const Float4 scaled = weights * detail::density_scale(lane_sum(mean * weights));
+    return {&tree, tree.root(), lane_sum(mean * scaled), scaled, {}};
   }
 };
 

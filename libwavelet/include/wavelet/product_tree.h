@@ -82,6 +82,8 @@ private:
   struct Rest {
     TreeView tree;
     Float4 floor = {}; ///< of the product of the others, in the density; lanes R, G, B, 0
+    /// Of the others in the density: luminance, scaled so that it stays within float.
+    Float4 weights = luminance_lanes;
   };
 
   /// What a factor holds at the nodes' quadrants.
@@ -118,7 +120,7 @@ private:
 
   TreeDensity density(const ProductLeaf& l) const {
     const Rest& rest = m_rests[l.rest];
-    const Float4 weights = larger(l.reflectance, rest.floor) * luminance_lanes;
+    const Float4 weights = larger(l.reflectance, rest.floor) * rest.weights;
     return {&rest.tree, l.node, lane_sum(l.light * weights), weights, l.slope};
   }
 

@@ -22,6 +22,10 @@ constexpr std::size_t points_per_leaf = 4;
 /// Squares of this level are not split, however much the reflectance varies.
 constexpr int finest_level = 14;
 
+/// Squares in work at once: beyond that, those left are added as they are. No pixel needs a tenth
+/// of it unless rounding of a light of very high contrast makes noise of what it reflects.
+constexpr std::size_t most_leaves = 1 << 16;
+
 Vec3 leaf_direction(const MaskedLeaf& leaf, std::size_t point) {
   constexpr float low = 0.21132487F;
   const float side = power_of_two(-leaf.level);
@@ -95,7 +99,7 @@ public:
     m_leaves.assign(leaves.begin(), leaves.end());
     m_sum.setZero();
     look_up(point, material);
-    const float largest = m_split_share * luminance(total());
+    const float largest = m_split_share * magnitude();
     while (!m_leaves.empty()) {
       add_or_split(largest);
       m_leaves.swap(m_next);
@@ -131,18 +135,20 @@ private:
     return wavelet::to_rgb(leaf.left) * power_of_two(-2 * leaf.level);
   }
 
-  Rgb total() const {
-    Rgb sum = Rgb::Zero();
+  /// Sum of the contributions' absolute values.
+  float magnitude() const {
+    double sum = 0;
     for (std::size_t i = 0; i < m_leaves.size(); ++i)
-      sum += contribution(i);
-    return sum;
+      sum += static_cast<double>(luminance(contribution(i).abs()));
+    return static_cast<float>(sum);
   }
 
   /// Leaves whose quadrants are to follow go to m_next.
   void add_or_split(float largest) {
     m_next.clear();
     for (std::size_t i = 0; i < m_leaves.size(); ++i) {
-      if (m_leaves[i].level < finest_level && range(i) > largest)
+      if (m_leaves[i].level < finest_level && m_next.size() + 4 <= most_leaves &&
+          range(i) > largest)
         m_masked.split(m_leaves[i], m_next);
       else
         m_sum += contribution(i).cast<double>();
