@@ -26,7 +26,7 @@ struct Options {
 };
 
 void declare(tool::Tool& app, Options& options) {
-  app.inputs(options.paths, "PICTURES", "EXR or PNG pictures");
+  app.inputs(options.paths, "PICTURES", "EXR (R, G, B, one layer of them, or Y) or PNG pictures");
   app.output(options.output, "OUT.png", "Contact sheet to write");
   app.texts(options.captions, "--caption", "TEXT",
             "Caption of a picture, one option for each in their order [the file's name]");

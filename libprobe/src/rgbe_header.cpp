@@ -4,6 +4,7 @@
 
 #include <wavelet/error.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -12,7 +13,7 @@
 namespace haarlight::probe {
 namespace {
 
-/// Longest header read: comments of thousands of lines occur, megabytes of them do not.
+/// Longest header read in bytes: comments of thousands of lines occur, megabytes of them do not.
 constexpr std::size_t longest_header = std::size_t{1} << 20;
 
 std::string_view trimmed(std::string_view text) {
@@ -42,20 +43,81 @@ std::optional<T> parse_number(std::string_view word) {
   return value;
 }
 
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), longest_header)};
+}
+
+/// The line from `position` on, without its end (LF or CR LF); moves `position` behind it.
+std::optional<std::string_view> next_line(std::string_view text, std::size_t& position) {
+  const auto end = text.find('\n', position);
+  if (end == std::string_view::npos)
+    return std::nullopt;
+  std::string_view line = text.substr(position, end - position);
+  if (line.ends_with('\r'))
+    line.remove_suffix(1);
+  position = end + 1;
+  return line;
+}
+
+/// The value of a variable that begins in the first column; programs that compose pictures indent
+/// the headers of their inputs, which must not count.
+std::optional<std::string_view> value_of(std::string_view line, std::string_view name) {
+  if (!line.starts_with(name) || line.substr(name.size(), 1) != "=")
+    return std::nullopt;
+  return line.substr(name.size() + 1);
+}
+
+/// Exactly `count` numbers separated by blanks.
+template <std::size_t count>
+std::optional<std::array<double, count>> parse_numbers(std::string_view text) {
+  std::array<double, count> numbers{};
+  for (double& number : numbers) {
+    const auto parsed = parse_number<double>(take_word(text));
+    if (!parsed || !std::isfinite(*parsed))
+      return std::nullopt;
+    number = *parsed;
+  }
+  return trimmed(text).empty() ? std::optional(numbers) : std::nullopt;
+}
+
+/// One axis of the size line, as `-Y 256`.
+struct Axis {
+  char letter = 0;
+  bool minus = false;
+  std::uint64_t extent = 0;
+};
+
+std::optional<Axis> take_axis(std::string_view& line) {
+  const std::string_view name = take_word(line);
+  const auto extent = parse_number<std::uint64_t>(take_word(line));
+  const bool named = name == "-X" || name == "+X" || name == "-Y" || name == "+Y";
+  if (!named || !extent || *extent < 1 || *extent > 0x7fffffff)
+    return std::nullopt;
+  return Axis{name[1], name[0] == '-', *extent};
+}
+
+/// Both axes of the size line in their order.
+std::optional<std::array<Axis, 2>> parse_size_line(std::string_view line) {
+  const auto first = take_axis(line);
+  const auto second = take_axis(line);
+  if (!first || !second || first->letter == second->letter || !trimmed(line).empty())
+    return std::nullopt;
+  return std::array{*first, *second};
+}
+
 class HeaderParser {
 public:
   HeaderParser(std::span<const std::byte> bytes, const std::string& path)
-      : m_text(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), longest_header)),
-        m_path(path) {}
+      : m_text(text_of(bytes)), m_path(path) {}
 
   RgbeHeader parse() {
-    next_line();
-    for (auto line = next_line(); !line.empty(); line = next_line())
+    for (auto line = read_line(); !line.empty(); line = read_line())
       read_variable(line);
-    const auto size_line = next_line();
+    const auto size_line = read_line();
     m_header.size_offset = m_line_offset;
     read_size(size_line);
     m_header.data_offset = m_position;
+    m_header.to_rec709 = m_xyz ? std::optional(xyz_to_rec709) : m_primaries_to_rec709;
     return m_header;
   }
 
@@ -64,92 +126,113 @@ private:
     throw_input_error(m_path, what, m_line_offset);
   }
 
-  std::string_view next_line() {
+  std::string_view read_line() {
     m_line_offset = m_position;
-    const auto end = m_text.find('\n', m_position);
-    if (end == std::string_view::npos)
+    const auto line = next_line(m_text, m_position);
+    if (!line)
       fail("the header does not end: a blank line and the size, as -Y 256 +X 256, are missing");
-    m_position = end + 1;
-    return trimmed(m_text.substr(m_line_offset, end - m_line_offset));
+    if (line->find('\0') != std::string_view::npos)
+      fail("the header line holds a NUL byte, text is needed");
+    return *line;
   }
 
   void read_variable(std::string_view line) {
-    const auto equals = line.find('=');
-    if (line.front() == '#' || equals == std::string_view::npos)
-      return;
-    const std::string_view name = trimmed(line.substr(0, equals));
-    const std::string_view value = line.substr(equals + 1);
-    if (name == "FORMAT")
-      read_format(trimmed(value));
-    else if (name == "EXPOSURE")
-      multiply_exposure(value, false);
-    else if (name == "COLORCORR")
-      multiply_exposure(value, true);
+    if (const auto format = value_of(line, "FORMAT"))
+      read_format(trimmed(*format));
+    else if (const auto exposure = value_of(line, "EXPOSURE"))
+      multiply_exposure(parse_numbers<1>(*exposure));
+    else if (const auto correction = value_of(line, "COLORCORR"))
+      multiply_exposure(parse_numbers<3>(*correction));
+    else if (const auto primaries = value_of(line, "PRIMARIES"))
+      read_primaries(*primaries);
+    else if (const auto gamma = value_of(line, "GAMMA"))
+      check_gamma(*gamma);
   }
 
   void read_format(std::string_view format) {
-    m_header.xyz = format == "32-bit_rle_xyze";
-    if (!m_header.xyz && format != "32-bit_rle_rgbe")
+    m_xyz = format == "32-bit_rle_xyze";
+    if (!m_xyz && format != "32-bit_rle_rgbe")
       fail("FORMAT is '" + std::string(format) + "', 32-bit_rle_rgbe or 32-bit_rle_xyze is read");
   }
 
-  void multiply_exposure(std::string_view value, bool each_its_own) {
-    std::optional<double> factor;
-    for (double& exposure : m_header.exposure) {
-      if (!factor || each_its_own)
-        factor = parse_number<double>(take_word(value));
-      if (!factor || !std::isfinite(*factor) || *factor <= 0)
-        fail("EXPOSURE and COLORCORR must be positive numbers");
-      exposure *= *factor;
+  template <std::size_t count>
+  void multiply_exposure(const std::optional<std::array<double, count>>& factors) {
+    if (!factors)
+      fail("EXPOSURE needs one number, COLORCORR three");
+    for (std::size_t c = 0; c < 3; ++c) {
+      m_header.exposure[c] *= (*factors)[count == 1 ? 0 : c];
+      // RGBE values span 2^±128; an exposure beyond that leaves none of them.
+      if (!(m_header.exposure[c] > 0x1p-256 && m_header.exposure[c] < 0x1p256))
+        fail("EXPOSURE and COLORCORR must multiply up to positive numbers of at most 2^256");
     }
-    if (!trimmed(value).empty())
-      fail("EXPOSURE has one number, COLORCORR three");
   }
 
-  /// One axis of the size line: sign and letter, and the extent.
-  std::uint64_t read_axis(std::string_view name, std::string_view extent) {
-    const bool minus = name.size() == 2 && name[0] == '-';
-    const bool plus = name.size() == 2 && name[0] == '+';
-    const auto count = parse_number<std::uint64_t>(extent);
-    if ((!minus && !plus) || (name[1] != 'X' && name[1] != 'Y') || !count || *count < 1 ||
-        *count > 0x7fffffff)
-      fail("the size line must read like -Y 256 +X 256");
-    if (name[1] == 'X')
-      m_header.x_reversed = minus;
-    else
-      m_header.y_reversed = plus;
-    return *count;
+  void read_primaries(std::string_view value) {
+    const auto primaries = parse_numbers<8>(value);
+    if (!primaries)
+      fail("PRIMARIES needs eight numbers: x and y of red, green, blue and white");
+    m_primaries_to_rec709.reset();
+    if (are_rec709(*primaries))
+      return;
+    m_primaries_to_rec709 = primaries_to_rec709(*primaries);
+    if (!m_primaries_to_rec709)
+      fail("PRIMARIES do not span a colour space");
+  }
+
+  /// 0 is written by programs that leave it unset.
+  void check_gamma(std::string_view value) const {
+    const auto gamma = parse_numbers<1>(value);
+    if (!gamma || ((*gamma)[0] != 0 && (*gamma)[0] != 1))
+      fail("GAMMA is '" + std::string(trimmed(value)) + "', linear pixels (1) are read");
   }
 
   void read_size(std::string_view line) {
-    const std::string_view first = take_word(line);
-    const std::string_view first_extent = take_word(line);
-    const std::string_view second = take_word(line);
-    const std::string_view second_extent = take_word(line);
-    m_header.lines = read_axis(first, first_extent);
-    m_header.length = read_axis(second, second_extent);
-    if (first[1] == second[1] || !trimmed(line).empty())
-      fail("the size line must name X and Y once each, like -Y 256 +X 256");
-    m_header.lines_are_rows = first[1] == 'Y';
+    const auto axes = parse_size_line(line);
+    if (!axes)
+      fail("the size line must name X and Y once each with their extents, like -Y 256 +X 256");
+    const auto& [first, second] = *axes;
+    m_header.lines = first.extent;
+    m_header.length = second.extent;
+    m_header.lines_are_rows = first.letter == 'Y';
+    m_header.x_reversed = (m_header.lines_are_rows ? second : first).minus;
+    m_header.y_reversed = !(m_header.lines_are_rows ? first : second).minus;
   }
 
   std::string_view m_text;
   const std::string& m_path;
   std::size_t m_position = 0;
   std::size_t m_line_offset = 0;
+  bool m_xyz = false;
+  std::optional<ColourMatrix> m_primaries_to_rec709;
   RgbeHeader m_header;
 };
 
 } // namespace
 
 bool is_rgbe(std::span<const std::byte> bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return text.starts_with("#?RADIANCE") || text.starts_with("#?RGBE");
+  const std::string_view text = text_of(bytes);
+  if (text.starts_with("#?"))
+    return true;
+  std::size_t position = 0;
+  for (auto line = next_line(text, position); line; line = next_line(text, position)) {
+    if (line->find('\0') != std::string_view::npos)
+      return false;
+    if (line->empty()) {
+      const auto size_line = next_line(text, position);
+      return size_line && parse_size_line(*size_line);
+    }
+    if (const auto format = value_of(*line, "FORMAT"))
+      return trimmed(*format).starts_with("32-bit_rle_");
+  }
+  return false;
 }
 
 RgbeHeader read_rgbe_header(std::span<const std::byte> bytes, const std::string& path) {
   if (!is_rgbe(bytes))
-    throw_input_error(path, "does not begin with #?RADIANCE or #?RGBE", 0);
+    throw_input_error(path,
+                      "is no Radiance picture: neither #?RADIANCE, nor FORMAT=32-bit_rle_rgbe, nor "
+                      "a blank line and a size line are found",
+                      0);
   return HeaderParser(bytes, path).parse();
 }
 

@@ -1,24 +1,28 @@
 #pragma once
-// The text in front of a Radiance picture's pixels.
+// The header of a Radiance picture.
+
+#include "rgbe_colour.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 namespace haarlight::probe {
 
-/// What a header says. Scanlines run along the second axis of the size line.
+/// The variables and the size line of a header. Scanlines run along the second axis of the size
+/// line.
 struct RgbeHeader {
-  std::uint64_t lines = 0;    ///< extent of the first axis
-  std::uint64_t length = 0;   ///< extent of the second axis, pixels of a scanline
-  bool lines_are_rows = true; ///< the first axis is Y
-  bool x_reversed = false;    ///< −X: a scanline, or the scanlines, run to the left
-  bool y_reversed = false;    ///< +Y: they run upwards
-  bool xyz = false;
-  std::array<double, 3> exposure = {1, 1, 1}; ///< what pixels were multiplied by
+  std::uint64_t lines = 0;               ///< extent of the first axis
+  std::uint64_t length = 0;              ///< extent of the second axis, pixels of a scanline
+  bool lines_are_rows = true;            ///< the first axis is Y
+  bool x_reversed = false;               ///< −X: a scanline, or the scanlines, run to the left
+  bool y_reversed = false;               ///< +Y: they run upwards
+  std::optional<ColourMatrix> to_rec709; ///< of XYZ or foreign primaries; none for Rec. 709
+  std::array<double, 3> exposure = {1, 1, 1}; ///< the factors that the pixels were multiplied by
   std::uint64_t size_offset = 0;
   std::uint64_t data_offset = 0;
 

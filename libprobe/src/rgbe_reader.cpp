@@ -7,21 +7,33 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 namespace haarlight::probe {
 namespace {
 
 using Pixel = std::array<std::uint8_t, 4>;
 
-/// Walks through the scanlines of a picture, never past the end of its bytes.
+/// Decodes the scanlines of a picture, never past the end of its bytes. Without a buffer it only
+/// checks them, so that a malformed file is refused before its pixels are allocated.
 class ScanlineReader {
 public:
-  ScanlineReader(std::span<const std::byte> bytes, const std::string& path, std::size_t position)
-      : m_bytes(bytes), m_path(path), m_position(position) {}
+  ScanlineReader(std::span<const std::byte> bytes, const std::string& path,
+                 const RgbeHeader& header)
+      : m_bytes(bytes), m_path(path), m_position(header.data_offset), m_length(header.length) {}
 
-  /// Reads the next scanline, of whichever coding.
-  void read(std::vector<Pixel>& line) {
-    const bool may_be_new = line.size() >= 8 && line.size() <= 32767;
+  void check_next() { read(nullptr); }
+
+  /// @param line receives the pixels of the scanline
+  void read_next(std::vector<Pixel>& line) {
+    line.resize(m_length);
+    read(line.data());
+  }
+
+private:
+  /// Reads the next scanline, of either coding.
+  void read(Pixel* line) {
+    const bool may_be_new = m_length >= 8 && m_length <= 32767;
     if (may_be_new && m_bytes.size() - m_position >= 4 && peek(0) == 2 && peek(1) == 2 &&
         peek(2) < 128)
       read_components(line);
@@ -30,7 +42,6 @@ public:
     ++m_line;
   }
 
-private:
   std::uint8_t peek(std::size_t ahead) const {
     return std::to_integer<std::uint8_t>(m_bytes[m_position + ahead]);
   }
@@ -58,56 +69,54 @@ private:
   }
 
   /// New run lengths: the line's four components one after the other.
-  void read_components(std::vector<Pixel>& line) {
+  void read_components(Pixel* line) {
     const std::size_t length = std::size_t{peek(2)} << 8U | peek(3);
-    if (length != line.size())
+    if (length != m_length)
       fail("says it holds " + std::to_string(length) + " pixels, the picture's have " +
-               std::to_string(line.size()),
+               std::to_string(m_length),
            m_position);
     m_position += 4;
     for (std::size_t component = 0; component < 4; ++component)
       read_component(line, component);
   }
 
-  void read_component(std::vector<Pixel>& line, std::size_t component) {
-    for (std::size_t x = 0; x < line.size();) {
+  void read_component(Pixel* line, std::size_t component) {
+    for (std::size_t x = 0; x < m_length;) {
       const std::size_t start = m_position;
       const unsigned code = next();
       const bool run = code > 128;
       const std::size_t count = run ? code - 128 : code;
-      if (count == 0 || count > line.size() - x)
+      if (count == 0 || count > m_length - x)
         fail("has a run of " + std::to_string(count) + " where 1 to " +
-                 std::to_string(line.size() - x) + " pixels are left",
+                 std::to_string(m_length - x) + " pixels are left",
              start);
-      copy_component(line, component, x, count, run);
+      need(run ? 1 : count);
+      for (std::size_t i = 0; line != nullptr && i < count; ++i)
+        line[x + i][component] = peek(run ? 0 : i);
+      m_position += run ? 1 : count;
       x += count;
     }
   }
 
-  void copy_component(std::vector<Pixel>& line, std::size_t component, std::size_t x,
-                      std::size_t count, bool run) {
-    need(run ? 1 : count);
-    for (std::size_t i = 0; i < count; ++i)
-      line[x + i][component] = peek(run ? 0 : i);
-    m_position += run ? 1 : count;
-  }
-
   /// Flat pixels, among which (1, 1, 1, n) repeats the one before n times (old run lengths);
   /// repeats in a row are the bytes of one count, the least first.
-  void read_pixels(std::vector<Pixel>& line) {
+  void read_pixels(Pixel* line) {
     unsigned shift = 0;
-    for (std::size_t x = 0; x < line.size();) {
+    for (std::uint64_t x = 0; x < m_length;) {
       const std::size_t start = m_position;
       const Pixel pixel = next_pixel();
       if (pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
-        line[x++] = pixel;
+        if (line != nullptr)
+          line[x] = pixel;
+        ++x;
         shift = 0;
         continue;
       }
       const std::uint64_t count = shift < 32 ? std::uint64_t{pixel[3]} << shift : 0;
-      if (x == 0 || shift >= 32 || count > line.size() - x)
+      if (x == 0 || shift >= 32 || count > m_length - x)
         fail("has a repeat that does not fit", start);
-      std::fill_n(line.begin() + static_cast<std::ptrdiff_t>(x), count, line[x - 1]);
+      if (line != nullptr)
+        std::fill_n(line + x, count, line[x - 1]);
       x += count;
       shift += 8;
     }
@@ -116,63 +125,54 @@ private:
   std::span<const std::byte> m_bytes;
   const std::string& m_path;
   std::size_t m_position;
-  std::size_t m_line = 0;
+  std::uint64_t m_length;
+  std::uint64_t m_line = 0;
 };
 
-/// What turns mantissas into values: powers of two, and the exposure undone.
-struct Decoder {
-  std::array<double, 256> power{};
-  std::array<double, 3> scale{};
-  bool xyz = false;
-
-  explicit Decoder(const RgbeHeader& header) : xyz(header.xyz) {
+/// Converts mantissas and exponents to linear Rec. 709 RGB, the exposure undone.
+class Decoder {
+public:
+  explicit Decoder(const RgbeHeader& header) : m_to_rec709(header.to_rec709) {
     for (int e = 1; e < 256; ++e)
-      power[static_cast<std::size_t>(e)] = std::ldexp(1.0, e - 136);
+      m_power[static_cast<std::size_t>(e)] = std::ldexp(1.0, e - 136);
     for (std::size_t c = 0; c < 3; ++c)
-      scale[c] = 1.0 / header.exposure[c];
+      m_scale[c] = 1.0 / header.exposure[c];
   }
 
   Rgb operator()(const Pixel& p) const {
-    const double unit = power[p[3]];
-    const Eigen::Array3d v(p[0] * unit * scale[0], p[1] * unit * scale[1], p[2] * unit * scale[2]);
-    return (xyz ? to_rec709(v) : v).cast<float>();
+    const double unit = m_power[p[3]];
+    const Eigen::Array3d v(p[0] * unit * m_scale[0], p[1] * unit * m_scale[1],
+                           p[2] * unit * m_scale[2]);
+    return (m_to_rec709 ? multiply(*m_to_rec709, v) : v).cast<float>();
   }
 
-  /// CIE XYZ, white D65 (IEC 61966-2-1).
-  static Eigen::Array3d to_rec709(const Eigen::Array3d& v) {
-    return {3.2404542 * v[0] - 1.5371385 * v[1] - 0.4985314 * v[2],
-            -0.9692660 * v[0] + 1.8760108 * v[1] + 0.0415560 * v[2],
-            0.0556434 * v[0] - 0.2040259 * v[1] + 1.0572252 * v[2]};
+private:
+  static Eigen::Array3d multiply(const ColourMatrix& m, const Eigen::Array3d& v) {
+    const auto row = [&](std::size_t r) {
+      return m[r][0] * v[0] + m[r][1] * v[1] + m[r][2] * v[2];
+    };
+    return {row(0), row(1), row(2)};
   }
+
+  std::array<double, 256> m_power{};
+  std::array<double, 3> m_scale{};
+  std::optional<ColourMatrix> m_to_rec709;
 };
 
-/// Fewest bytes a scanline can take in any coding, so that a short file cannot ask for much memory.
-std::uint64_t least_scanline_bytes(std::uint64_t length) {
-  std::uint64_t old_bytes = 4;
-  for (std::uint64_t covered = 1, reach = 255; covered < length; reach *= 256) {
-    covered += reach;
-    old_bytes += 4;
-  }
-  if (length < 8 || length > 32767)
-    return old_bytes;
-  return std::min(old_bytes, 4 + 8 * ((length + 126) / 127));
-}
-
-void check_size(const RgbeHeader& header, std::size_t file_size, const std::string& path) {
+/// Refuses a picture too large, and one whose scanlines are malformed or do not hold all of its
+/// pixels. Reads the encoded bytes once and allocates nothing: a chain of old run lengths may
+/// stand for 2^32 pixels in 20 bytes, so no bound by the size of the file alone would be tight.
+void check_picture(std::span<const std::byte> bytes, const RgbeHeader& header,
+                   const std::string& path) {
   const std::uint64_t pixels = header.lines * header.length;
   if (pixels > max_pixels)
     throw_input_error(path,
                       "is said to have " + std::to_string(pixels) + " pixels, at most " +
                           std::to_string(max_pixels) + " are read",
                       header.size_offset);
-  const std::uint64_t least = header.lines * least_scanline_bytes(header.length);
-  if (file_size - header.data_offset < least)
-    throw_input_error(path,
-                      "is cut short: " + std::to_string(header.lines) + " scanlines of " +
-                          std::to_string(header.length) + " pixels take " + std::to_string(least) +
-                          " bytes at least, " + std::to_string(file_size - header.data_offset) +
-                          " follow the header",
-                      file_size);
+  ScanlineReader reader(bytes, path, header);
+  for (std::uint64_t s = 0; s < header.lines; ++s)
+    reader.check_next();
 }
 
 } // namespace
@@ -184,13 +184,13 @@ Rgb decode_rgbe(const std::array<std::uint8_t, 4>& pixel) {
 
 Image read_rgbe(std::span<const std::byte> bytes, const std::string& path) {
   const RgbeHeader header = read_rgbe_header(bytes, path);
-  check_size(header, bytes.size(), path);
+  check_picture(bytes, header, path);
   const Decoder decode(header);
   Image image(header.width(), header.height());
-  ScanlineReader reader(bytes, path, header.data_offset);
-  std::vector<Pixel> line(header.length);
+  ScanlineReader reader(bytes, path, header);
+  std::vector<Pixel> line;
   for (std::uint64_t s = 0; s < header.lines; ++s) {
-    reader.read(line);
+    reader.read_next(line);
     for (std::uint64_t i = 0; i < header.length; ++i) {
       const auto [x, y] = header.place(s, i);
       image.set(x, y, decode(line[i]));

@@ -137,6 +137,13 @@ expect 0 haarsheet atlas.exr atlas.exr --caption a --caption b -o sheet.png
 expect 2 haarsheet atlas.exr atlas.exr --caption a -o sheet.png
 expect 3 haarsheet atlas.exr set.exr one.haar -o x.png
 expect 3 haarsheet missing.png -o x.png
+# a header of an EXR image of 2^26 pixels without any of them
+head -c "$(($(stat -c %s atlas.exr) / 2))" atlas.exr >bad.exr
+expect 3 haarsheet bad.exr -o x.png
+patch bad.exr "$(($(grep -abo dataWindow bad.exr | head -1 | cut -d: -f1) + 29))" '\377\37\0\0\377\37\0\0'
+(ulimit -v 300000; failures=0; expect 3 haarsheet bad.exr -o x.png; says bad.exr; exit "$failures") ||
+  fail "a small file takes much memory"
+rm bad.exr
 refuses_bad_output .png haarsheet atlas.exr -o @
 leaves studio.hdr set.exr one.haar atlas.exr sheet.png
 finish

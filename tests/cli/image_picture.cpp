@@ -111,6 +111,25 @@ TEST_CASE("broken pictures are refused", "[image]") {
   CHECK_THROWS_AS(image::read_exr(folder.file("missing.exr")), Error);
 }
 
+TEST_CASE("a PNG whose file cannot hold its pixels is refused", "[image]") {
+  const TemporaryFolder folder;
+  image::write_png(folder.file("a.png"), ramp(31, 17));
+  std::string png = read_bytes(folder.file("a.png"));
+  // The header chunk with 16384 x 8192 pixels, and its checksum.
+  png.replace(16, 17, std::string("\0\0\x40\0\0\0\x20\0\x08\x02\0\0\0\xad\x1c\xcb\x36", 17));
+  write_bytes(folder.file("a.png"), png);
+  try {
+    image::read_png(folder.file("a.png"));
+    FAIL("accepted");
+  } catch (const Error& error) {
+    CHECK_THAT(error.what(), Catch::Contains("too short for its 16384 x 8192 pixels"));
+  }
+  // A black picture is small, and read.
+  image::write_png(folder.file("black.png"), Picture(2000, 1000));
+  CHECK(std::filesystem::file_size(folder.file("black.png")) < 40000);
+  CHECK(image::read_png(folder.file("black.png")).width == 2000);
+}
+
 TEST_CASE("a contact sheet shows every picture and its caption", "[image]") {
   Picture red(10, 8);
   for (std::size_t i = 0; i < red.rgb.size(); i += 3)

@@ -39,6 +39,18 @@ expect 0 probe2maps sun-sky.hdr -o one.haar --size 16 --mapping mirrorball --sup
 expect 0 haarinfo one.haar --image picture.exr
 expect 0 probe2maps picture.exr -o one.haar --mapping octahedral
 rm a.exr one.haar two.haar picture.exr
+# RGBE of another program: any first line, and an EXPOSURE of a composed picture
+grey() { printf '\200\200\200\201%.0s' 1 2 3 4 5 6 7 8; }
+{ printf '#?RADIANCE\n\n-Y 2 +X 4\n'; grey; } >plain.hdr
+{ printf 'made elsewhere\ninput.hdr:\n\tEXPOSURE=8\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 4\n'; grey; } >odd.hdr
+{ printf '#?OTHER\nEXPOSURE=1\n\n-Y 2 +X 4\n'; grey; } >other.hdr
+for name in plain odd other; do
+  expect 0 probe2maps $name.hdr -o $name.exr --size 16 --json
+done
+for name in odd other; do
+  expect 0 haardiff plain.exr $name.exr --max-relative-l2 0
+done
+rm plain.* odd.* other.*
 
 # usage
 expect 2 probe2maps studio.hdr -o x.tif
@@ -59,6 +71,10 @@ expect 0 probe2maps bad.hdr -o x.exr --mapping latlong --size 16
 rm x.exr
 printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000000000 +X 2000000000\nabc' >bad.hdr
 expect 3 probe2maps bad.hdr -o x.exr
+# 230 bytes that claim 20 million pixels: no memory is taken for them
+{ printf '#?RADIANCE\n\n-Y 6 +X 3333333\n'; printf '3%.0s' {1..200}; } >bad.hdr
+(ulimit -v 200000; failures=0; expect 3 probe2maps bad.hdr -o x.exr; says 'cut short'; exit "$failures") ||
+  fail "a small file takes much memory"
 # a PFM image of 2 x 1 pixels, one of them not a number
 { printf 'PF\n2 1\n-1.0\n'; printf '\0\0\200\77%.0s' 1 2 3 4 5; printf '\0\0\300\177'; } >nan.pfm
 expect 3 probe2maps nan.pfm -o x.exr --mapping latlong

@@ -87,6 +87,31 @@ TEST_CASE("wrong MERL dimensions are named one by one", "[merl]") {
   CHECK(error_of("just a line of text, no reflectance\n").offset() == 0);
 }
 
+TEST_CASE("damaged MERL headers are refused before the values are read", "[merl]") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("broken.binary");
+  const auto refused = [&](const std::string& first, std::size_t size) {
+    write_bytes(path, first);
+    std::filesystem::resize_file(path, size); // a sparse file of zeros
+    CHECK_THROWS_AS(read_merl(path), Error);
+  };
+  const std::string right = header(90, 90, 180);
+  for (std::size_t bit = 0; bit < 96; ++bit) {
+    std::string damaged = right;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
+    refused(damaged, file_size);
+  }
+  for (const std::int32_t extreme : {-1, 0, 1 << 30, std::numeric_limits<std::int32_t>::max(),
+                                     std::numeric_limits<std::int32_t>::min()}) {
+    refused(header(extreme, 90, 180), file_size);
+    refused(header(90, extreme, 180), file_size);
+    refused(header(90, 90, extreme), file_size);
+    refused(header(extreme, extreme, extreme), 12);
+  }
+  for (std::size_t size = 0; size < file_size; size += file_size / 50)
+    refused(right.substr(0, size), size);
+}
+
 TEST_CASE("MERL files of the wrong size are refused where they end", "[merl]") {
   CHECK(error_of("").offset() == 0);
   CHECK(error_of("abc").offset() == 3);

@@ -5,8 +5,6 @@
 
 #include <wavelet/error.h>
 
-#include <OpenEXR/ImfChannelList.h>
-
 #include <bit>
 #include <cstdint>
 
@@ -14,22 +12,6 @@ namespace haarlight::image {
 namespace {
 
 using wavelet::SetInfo;
-
-/// R, G and B, or Y for all three.
-std::array<std::string, 3> channel_names(const Imf::Header& header, const std::string& path) {
-  const Imf::ChannelList& channels = header.channels();
-  std::array<std::string, 3> names = {"R", "G", "B"};
-  if (channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr)
-    names.fill("Y");
-  for (const std::string& name : names) {
-    const Imf::Channel* channel = channels.findChannel(name);
-    if (channel == nullptr)
-      throw_input_error(path, "has no channel " + name + "; R, G, B or Y are needed");
-    if (channel->xSampling != 1 || channel->ySampling != 1 || channel->type == Imf::UINT)
-      throw_input_error(path, "channel " + name + " is subsampled or of integers");
-  }
-  return names;
-}
 
 struct Extent {
   Imath::V2i origin;
@@ -62,15 +44,14 @@ void check_tiles(const Imf::Header& header, const SetInfo& info, const std::stri
 }
 
 SetInfo plain_info(const Imf::Header& header, const InputFile& file) {
-  const Extent extent = extent_of(header);
-  if (extent.width != extent.height || extent.width < 1 || extent.width > (1 << 13) ||
-      !std::has_single_bit(static_cast<std::uint64_t>(extent.width)))
+  const Imath::V2i size = display_size(header, file.path());
+  if (size.x != size.y || size.x > (1 << 13) || !std::has_single_bit(static_cast<unsigned>(size.x)))
     throw_input_error(file.path(),
                       "is no map set (the header attribute haarlight:kind is missing), and of " +
-                          size_text(extent.width, extent.height) +
+                          size_text(size.x, size.y) +
                           " no single map either: a square of a power of two is needed");
   SetInfo info;
-  info.size = static_cast<int>(extent.width);
+  info.size = size.x;
   info.frame = "as in the source image";
   info.units = "as in the source image";
   info.provenance.set("source", base_name(file.path()));
@@ -82,12 +63,12 @@ SetInfo plain_info(const Imf::Header& header, const InputFile& file) {
 } // namespace
 
 ExrMapLayout read_map_layout(const InputFile& file) {
-  const Imf::Header header = read_exr_header(file);
   ExrMapLayout layout;
-  layout.channels = channel_names(header, file.path());
+  layout.header = read_exr_header(file);
+  const Imf::Header& header = layout.header;
+  layout.channels = choose_channels(header, file.path());
   layout.plain = !has_set_attributes(header);
   layout.info = layout.plain ? plain_info(header, file) : read_attributes(header, file.path());
-  layout.origin = header.dataWindow().min;
   if (layout.plain)
     return layout;
   if (!header.hasTileDescription())
@@ -96,10 +77,11 @@ ExrMapLayout read_map_layout(const InputFile& file) {
   return layout;
 }
 
-Imf::FrameBuffer frame_of(wavelet::Map& map, const Imath::V2i& origin, const ExrMapLayout& layout) {
+Imf::FrameBuffer frame_of(wavelet::Map& map, const Imath::V2i& origin,
+                          const RgbChannels& channels) {
   Imf::FrameBuffer frame;
-  for (std::size_t c = 0; c < (layout.grey() ? 1U : 3U); ++c)
-    frame.insert(layout.channels[c],
+  for (std::size_t c = 0; c < (channels.grey() ? 1U : 3U); ++c)
+    frame.insert(channels.names[c],
                  Imf::Slice::Make(Imf::FLOAT, map.rgb.data() + c, origin, map.size, map.size,
                                   3 * sizeof(float),
                                   3 * sizeof(float) * static_cast<std::size_t>(map.size)));

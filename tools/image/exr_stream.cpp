@@ -32,21 +32,12 @@ void ExrOutputStream::rethrow() const {
 ExrInputStream::ExrInputStream(const InputFile& file)
     : Imf::IStream(file.path().c_str()), m_bytes(file.bytes()) {}
 
-const char* ExrInputStream::take(int count) {
+bool ExrInputStream::read(char bytes[], int count) {
   const auto wanted = static_cast<std::uint64_t>(count);
   if (count < 0 || m_position > m_bytes.size() || wanted > m_bytes.size() - m_position)
     throw Iex::InputExc("the file ends too early");
-  const auto* first = reinterpret_cast<const char*>(m_bytes.data()) + m_position;
+  std::memcpy(bytes, m_bytes.data() + m_position, wanted);
   m_position += wanted;
-  return first;
-}
-
-char* ExrInputStream::readMemoryMapped(int count) {
-  return const_cast<char*>(take(count)); // OpenEXR only reads there
-}
-
-bool ExrInputStream::read(char bytes[], int count) {
-  std::memcpy(bytes, take(count), static_cast<std::size_t>(count));
   return m_position < m_bytes.size();
 }
 

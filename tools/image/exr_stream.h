@@ -36,20 +36,17 @@ private:
   std::uint64_t m_size = 0;
 };
 
-/// Reads from mapped bytes, which must outlive it.
+/// Reads from mapped bytes, which must outlive it. OpenEXR gets copies: in a memory-mapped stream
+/// it reads past the end of chunks that are shorter than their pixels.
 class ExrInputStream : public Imf::IStream {
 public:
   explicit ExrInputStream(const InputFile& file);
 
-  bool isMemoryMapped() const override { return true; }
-  char* readMemoryMapped(int count) override;
   bool read(char bytes[], int count) override;
   std::uint64_t tellg() override { return m_position; }
   void seekg(std::uint64_t position) override { m_position = position; }
 
 private:
-  const char* take(int count);
-
   std::span<const std::byte> m_bytes;
   std::uint64_t m_position = 0;
 };

@@ -32,7 +32,9 @@ void write_exr(const std::string& path, const ExrImage& image);
 /// A picture as channels R, G, B. @throws Error(Output)
 void write_exr(const std::string& path, const Picture& picture);
 
-/// R, G, B (or Y) of any single-part EXR image. @throws Error(Input)
+/// The display window of a single-part EXR image of scanlines or tiles, black outside of the data
+/// window: channels R, G, B, else those of the only layer that has all three, else Y.
+/// @throws Error(Input) for other images, and for damaged files before memory is allocated for them
 Picture read_exr(const std::string& path);
 
 } // namespace haarlight::image

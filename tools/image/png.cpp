@@ -52,6 +52,23 @@ struct Cleaner {
 };
 
 constexpr std::uint64_t most_pixels = std::uint64_t{1} << 28;
+constexpr std::uint64_t deflate_ratio = 1032; ///< most bytes per compressed byte (zlib)
+
+/// Refuses pictures whose pixels the file cannot hold, before they are allocated.
+/// @param image of a file whose header libpng has read
+void check_png_size(const InputFile& file, const png_image& image) {
+  const std::uint64_t width = image.width;
+  if (width * image.height > most_pixels)
+    throw_input_error(file.path(), "has more than 2^28 pixels");
+  // The header chunk IHDR comes first: width, height at byte 16, then bits and type of a pixel.
+  const auto bits = std::to_integer<std::uint64_t>(file.bytes()[24]);
+  constexpr std::array<std::uint64_t, 7> channels = {1, 1, 3, 1, 2, 1, 4};
+  const auto type = std::to_integer<std::size_t>(file.bytes()[25]);
+  const std::uint64_t raw = image.height * ((width * bits * channels[type % 7] + 7) / 8);
+  if (raw / deflate_ratio > file.bytes().size())
+    throw_input_error(file.path(), "is too short for its " + std::to_string(width) + " x " +
+                                       std::to_string(image.height) + " pixels");
+}
 
 } // namespace
 
@@ -100,8 +117,7 @@ Picture read_png(const std::string& path) {
   const Cleaner cleaner(image);
   if (png_image_begin_read_from_memory(&image, file.bytes().data(), file.bytes().size()) == 0)
     throw_input_error(path, std::string("is no PNG image: ") + image.message);
-  if (std::uint64_t{image.width} * image.height > most_pixels)
-    throw_input_error(path, "has more than 2^28 pixels");
+  check_png_size(file, image);
   image.format = PNG_FORMAT_RGB;
   const png_color black = {0, 0, 0};
   std::vector<unsigned char> codes(PNG_IMAGE_SIZE(image));
