@@ -37,6 +37,8 @@ public:
     Centroid whole;
     for (std::size_t i = 0; i < m_pixels.count(); ++i)
       whole.add(m_pixels.directions[i], m_pixels.luminance[i]);
+    if (!(whole.weight() > 0))
+      return {};
     m_sites.assign(1, whole.direction());
     while (m_sites.size() < count && split(count))
       relax(rounds_between_splits);
