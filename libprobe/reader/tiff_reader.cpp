@@ -164,7 +164,8 @@ std::vector<std::uint8_t> read_strips(TIFF* tiff, const TiffHeader& h) {
   const std::size_t bytes = h.sample_bytes();
   if (line.size() < (separate ? h.width * bytes : h.row_bytes()))
     refuse_damaged();
-  for (std::uint16_t plane = 0; plane < (separate ? h.samples : 1); ++plane)
+  const std::uint16_t planes = separate ? h.samples : std::uint16_t{1};
+  for (std::uint16_t plane = 0; plane < planes; ++plane)
     for (std::uint32_t y = 0; y < h.height; ++y) {
       if (::TIFFReadScanline(tiff, line.data(), y, plane) < 0)
         refuse_damaged();
@@ -191,7 +192,8 @@ std::vector<std::uint8_t> read_tiles(TIFF* tiff, const TiffHeader& h) {
   std::vector<std::uint8_t> tile(static_cast<std::size_t>(::TIFFTileSize64(tiff)));
   if (tile.size() < std::size_t{tile_width} * tile_height * bytes)
     refuse_damaged();
-  for (std::uint16_t plane = 0; plane < (separate ? h.samples : 1); ++plane)
+  const std::uint16_t planes = separate ? h.samples : std::uint16_t{1};
+  for (std::uint16_t plane = 0; plane < planes; ++plane)
     for (std::uint32_t y = 0; y < h.height; y += tile_height)
       for (std::uint32_t x = 0; x < h.width; x += tile_width) {
         if (::TIFFReadTile(tiff, tile.data(), x, y, 0, plane) < 0)

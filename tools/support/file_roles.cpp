@@ -23,7 +23,7 @@ std::string output_identity(const std::string& path) {
                                                                            : path;
   if (::stat(path.c_str(), &status) == 0)
     return inode_text(status);
-  const std::string target = link_target(path);
+  std::string target = link_target(path);
   const std::size_t slash = target.rfind('/');
   const std::string folder = slash == std::string::npos ? "./" : target.substr(0, slash + 1);
   if (::stat(folder.c_str(), &status) != 0)
