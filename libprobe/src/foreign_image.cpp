@@ -14,8 +14,8 @@
 namespace haarlight::probe {
 namespace {
 
-/// Seconds of CPU time that decoding may take. The slowest files measured, PIZ and DWAA of 2^27
-/// pixels, take below half of it.
+/// Seconds of CPU time that decoding may take: a limit for decoders that do not end, far above the
+/// time of those that do.
 std::uint64_t cpu_seconds(std::uint64_t file_bytes) { return 60 + 2 * (file_bytes >> 20); }
 
 /// Waiting time per second of CPU time that is allowed: other processes run too.

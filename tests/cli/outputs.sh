@@ -207,4 +207,22 @@ grep -q 'MiB for a map of 8192 x 8192 pixels' "$log/err" || fail "the purpose is
 starved 400000 haarrender scene.json --spp 1 --size 8192x8192 --force -o a.exr
 says "a film of 8192 x 8192 pixels"
 leaves "${inputs[@]}"
+
+# a full disk: no output and no temporary, and an old output stays
+mkdir full
+if mount -t tmpfs -o size=128k tmpfs full 2>/dev/null; then
+  echo old >full/a.exr
+  for force in "" --force; do
+    expect 4 probe2maps probe.hdr --size 512 $force -o full/a.exr
+    expect 4 probe2maps probe.hdr --size 512 $force -o full/b.exr
+    expect 4 haarrender scene.json --spp 1 --size 256x256 $force -o full/b.exr
+    expect 4 brdfsynth --model ggx -o full/b.binary
+    [ "$(ls -A full)" = a.exr ] || fail "a full disk: files are left: $(ls -A full)"
+    [ "$(cat full/a.exr)" = old ] || fail "a full disk: the old output is gone"
+  done
+  umount full
+else
+  echo "SKIPPED: a full disk, as mounting is not permitted"
+fi
+rmdir full
 finish
