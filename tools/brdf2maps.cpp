@@ -1,10 +1,13 @@
 // brdf2maps: a measured BRDF to a set of maps in the reflection frame.
 #include <support/map_output.h>
 #include <support/program.h>
+#include <support/words.h>
 
 #include <brdf/bilateral.h>
 #include <brdf/brdf_maps.h>
 #include <wavelet/out_of_memory.h>
+
+#include <array>
 
 using namespace haarlight;
 
@@ -58,14 +61,52 @@ brdf::BrdfMapOptions map_options(const Options& o) {
   return maps;
 }
 
+/// Says why a table without a valid cell has no maps.
+std::string emptiness(const brdf::MeasuredBrdf& table) {
+  std::string channels;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (table.negative_fractions()[c] == 1)
+      channels += std::string(channels.empty() ? "" : ", ") + std::array{"red", "green", "blue"}[c];
+  return channels.empty() ? "every cell is negative in some channel"
+                          : "every cell is negative in " + channels;
+}
+
+/// Notes an albedo that no passive surface has.
+void note_albedo(const tool::Tool& app, const Options& options, const brdf::BrdfMaps& maps) {
+  float largest = 1;
+  int column = -1;
+  for (int c = 0; c < maps.info().columns; ++c) {
+    const float albedo = maps.integral(c, 0)->maxCoeff();
+    if (albedo > largest) {
+      largest = albedo;
+      column = c;
+    }
+  }
+  if (column < 0)
+    return;
+  const double degrees = (column + 0.5) * 90 / maps.info().columns;
+  app.note(options.input + ": the albedo is above 1, up to " +
+           tool::short_text(static_cast<double>(largest)) +
+           " at theta_r = " + tool::short_text(degrees) + " degrees");
+}
+
 int make_maps(const tool::Tool& app, const Options& options) {
   const brdf::BrdfMapOptions map_settings = map_options(options);
   auto table = with_memory_for("the cells of " + options.input, 0,
                                [&] { return brdf::MeasuredBrdf(options.input, options.lookup); });
   tool::Report report;
-  report.add("source", table.name()).add("bilateral_asymmetry", brdf::bilateral_asymmetry(table));
+  report.add("source", table.name()).add("invalid_cells", table.invalid_fraction());
+  if (table.invalid_fraction() == 1) {
+    app.print(report);
+    app.note(options.input + ": not written: no cell is valid, " + emptiness(table));
+    return tool::exit_no;
+  }
+  report.add("bilateral_asymmetry", brdf::bilateral_asymmetry(table));
   const brdf::BrdfMaps maps(std::move(table), map_settings);
-  return tool::write_map_set(app, maps, options.output, report);
+  const int code = tool::write_map_set(app, maps, options.output, report);
+  if (map_settings.cosine)
+    note_albedo(app, options, maps);
+  return code;
 }
 
 } // namespace

@@ -26,18 +26,29 @@ MeasuredBrdf::MeasuredBrdf(const MerlTable& table, Lookup lookup, const std::str
 
 void MeasuredBrdf::fill(const MerlTable& table) {
   std::size_t source = 0;
+  std::size_t invalid = 0;
+  std::array<std::size_t, 3> negative = {};
   for (int row = 0; row < merl_theta_h_bins * merl_theta_d_bins; ++row) {
     Cell* target = m_cells.data() + index(0, row, 1);
     for (int i = 0; i < m_phi_d_bins; ++i, ++source) {
       const double r = table.value(0, source);
       const double g = table.value(1, source);
       const double b = table.value(2, source);
+      negative[0] += r >= 0 ? 0 : 1;
+      negative[1] += g >= 0 ? 0 : 1;
+      negative[2] += b >= 0 ? 0 : 1;
       if (r >= 0 && g >= 0 && b >= 0)
         target[i].value =
             Float4{static_cast<float>(r * merl_scale[0]), static_cast<float>(g * merl_scale[1]),
                    static_cast<float>(b * merl_scale[2]), 1.0F};
+      else
+        ++invalid;
     }
   }
+  const auto cells = static_cast<double>(source);
+  m_invalid_fraction = static_cast<double>(invalid) / cells;
+  for (std::size_t c = 0; c < 3; ++c)
+    m_negative_fractions[c] = static_cast<double>(negative[c]) / cells;
 }
 
 void MeasuredBrdf::pad_rows() {

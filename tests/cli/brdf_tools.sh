@@ -79,6 +79,29 @@ patch bad.binary $((12 + 8 * 1000)) '\0\0\0\0\0\0\370\177'
 expect 3 brdf2maps bad.binary -o x.haar "${small[@]}"
 says "byte 8012"
 rm bad.binary
+
+# tables of one byte value in each plane: \277 makes negative doubles, \101 ones of 2e6, \0 zeros
+# planes RED GREEN BLUE
+planes() {
+  local byte
+  printf '\132\0\0\0\132\0\0\0\264\0\0\0'
+  for byte; do head -c 11664000 /dev/zero | tr '\0' "$byte"; done
+}
+planes '\277' '\0' '\0' >table.binary
+expect 1 brdf2maps table.binary -o x.haar "${small[@]}"
+says "no cell is valid, every cell is negative in red"
+grep -Eq '^invalid cells +1$' "$log/out" || fail "the invalid cells are missing: $(cat "$log/out")"
+planes '\277' '\277' '\277' >table.binary
+expect 1 brdf2maps table.binary -o x.exr "${small[@]}"
+says "negative in red, green, blue"
+planes '\0' '\0' '\0' >table.binary
+expect 0 brdf2maps table.binary -o x.exr "${small[@]}"
+grep -Eq '^invalid cells +0$' "$log/out" || fail "a black table has invalid cells: $(cat "$log/out")"
+rm x.exr
+planes '\101' '\0' '\0' >table.binary
+expect 0 brdf2maps table.binary -o x.exr "${small[@]}"
+says "the albedo is above 1, up to"
+rm x.exr table.binary
 refuses_bad_output .exr brdf2maps ggx.binary -o @ "${small[@]}"
 refuses_bad_output .haar brdf2maps ggx.binary -o @ "${small[@]}"
 leaves ggx.binary

@@ -11,6 +11,7 @@
 #include <wavelet/geometry.h>
 #include <wavelet/lanes.h>
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -80,6 +81,12 @@ public:
     return m_cells[static_cast<std::size_t>(index(theta_h, theta_d, phi_d + 1))].value;
   }
 
+  /// Fraction of the table's cells that are invalid: negative in some channel. About 0.21 of a
+  /// measurement's cells lie below the horizon.
+  double invalid_fraction() const { return m_invalid_fraction; }
+  /// The same by channel.
+  const std::array<double, 3>& negative_fractions() const { return m_negative_fractions; }
+
   Lookup lookup() const { return m_lookup; }
   int phi_d_bins() const { return m_phi_d_bins; }
   /// Whether reciprocity is built into the table.
@@ -112,6 +119,8 @@ private:
   int m_phi_d_bins;
   std::string m_name;
   std::string m_hash;
+  double m_invalid_fraction = 0;
+  std::array<double, 3> m_negative_fractions = {};
   /// Rows of φ_d with one cell of wrap-around at either end.
   std::vector<Cell, LargePages<Cell>> m_cells;
 };
