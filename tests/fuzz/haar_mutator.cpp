@@ -211,11 +211,13 @@ void PackedParts::match_mapped_header(std::span<const Bytes> block_bytes) {
     SetLayout layout(info_from(mapped, words), static_cast<int>(mapped.channels),
                      static_cast<CoefficientType>(mapped.coefficient_type));
     std::uint64_t trees = 0;
-    for (const Bytes& block : block_bytes)
-      for (const Tree& tree : decode_block(block, roomy, rules, 0)) {
+    for (const Bytes& block : block_bytes) {
+      const DecodedBlock decoded = decode_block(block, roomy, rules, 0);
+      for (const Tree& tree : decoded.trees) {
         layout.add(tree);
         ++trees;
       }
+    }
     if (trees != std::uint64_t{mapped.columns} * mapped.rows)
       return;
     layout.finish();
