@@ -1,3 +1,14 @@
+# haarlight_precompile(TARGET): lets a library's sources share one precompiled header of all libraries.
+function(haarlight_precompile target)
+  if(NOT HAARLIGHT_PRECOMPILE)
+    return()
+  elseif(target STREQUAL haarlight_wavelet)
+    target_precompile_headers(${target} PRIVATE ${HAARLIGHT_COMMON_HEADERS})
+  else()
+    target_precompile_headers(${target} REUSE_FROM haarlight_wavelet)
+  endif()
+endfunction()
+
 # haarlight_library(NAME FOLDER SOURCES … HEADERS … PUBLIC … PRIVATE …)
 # One installed static library haarlight::NAME whose public headers live in FOLDER/include/NAME.
 function(haarlight_library name)
@@ -10,6 +21,7 @@ function(haarlight_library name)
   target_compile_features(haarlight_${name} PUBLIC cxx_std_20)
   target_link_libraries(haarlight_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE}
                         $<BUILD_INTERFACE:haarlight_settings>)
+  haarlight_precompile(haarlight_${name})
   install(TARGETS haarlight_${name} EXPORT haarlightTargets FILE_SET HEADERS)
 endfunction()
 
@@ -19,4 +31,13 @@ function(haarlight_tool name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE haarlight_tool_support ${arg_LINKS} haarlight_settings)
   install(TARGETS ${name} RUNTIME)
+endfunction()
+
+# haarlight_tool_library(NAME SOURCES … PUBLIC … PRIVATE …): what several programs share; included as <folder/x.h>.
+function(haarlight_tool_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC ${arg_SOURCES})
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/tools)
+  target_link_libraries(${name} PUBLIC ${arg_PUBLIC} haarlight::wavelet PRIVATE ${arg_PRIVATE} haarlight_settings)
+  haarlight_precompile(${name})
 endfunction()

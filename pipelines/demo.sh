@@ -4,8 +4,9 @@
 # Usage: bash pipelines/demo.sh [OUTPUT_FOLDER]   (default pipelines/out/demo)
 set -euo pipefail
 
+unset CDPATH
 caller=$PWD
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 out=${1:-$PWD/pipelines/out/demo}
 case $out in /*) ;; *) out=$caller/$out ;; esac
 bin=$PWD/build/release/bin
@@ -23,7 +24,7 @@ once() {
   [ -e "$1" ] || "${@:2}" -q -o "$1" >/dev/null
 }
 
-mkdir -p "$out/source" "$out/scene"
+mkdir -p -- "$out/source" "$out/scene"
 echo "== sources"
 once "$out/source/plastic.binary" "$bin/brdfsynth" --model ggx --diffuse 0.25,0.04,0.03 --roughness 0.12
 once "$out/source/metal.binary" "$bin/brdfsynth" --model ggx --specular 0.9,0.7,0.4 --roughness 0.06
@@ -33,9 +34,13 @@ once "$out/source/studio.hdr" "$bin/probesynth" --scene studio --size 512
 once "$out/source/sun-sky.hdr" "$bin/probesynth" --scene sun-sky --size 512
 
 echo "== trees and pictures"
-make --no-print-directory -C pipelines -j "$jobs" OUT="$out" TABLES=1 SPP=$spp \
-  BRDF="$out/source/plastic.binary $out/source/metal.binary $out/source/paint.binary" \
-  PROBE="$out/source/studio.hdr $out/source/sun-sky.hdr" >/dev/null
+# make reads $$ as $, and in a list a backslash makes a blank part of a word.
+for_make=${out//\$/\$\$}
+in_list=${for_make//\\/\\\\}
+in_list=${in_list// /\\ }
+make --no-print-directory -C pipelines -j "$jobs" OUT="$for_make" TABLES=1 SPP=$spp \
+  BRDF="$(printf '%s ' "$in_list"/source/{plastic,metal,paint}.binary)" \
+  PROBE="$(printf '%s ' "$in_list"/source/{studio,sun-sky}.hdr)" >/dev/null
 
 echo "== demo picture"
 cp pipelines/scenes/demo.json "$out/scene/demo.json"

@@ -1,55 +1,42 @@
-# The pictures of README.md and GALLERY.md, from nothing, into pictures. Read by Makefile for the target
-# readme, which calls for the others:
+# The pictures of README.md and GALLERY.md, from nothing, into pictures. Read by Makefile for the goal readme:
 #
 #   make -C pipelines readme -j2
 #
 #   OUT         folder for everything made (default out/readme here)
 #   PICTURES    folder of the pictures (default pictures here)
+#   SPP, RENDER_FLAGS    of the gallery
 
-.PHONY: readme
-OUT ?= $(here)/out/readme
-PICTURES ?= $(here)/pictures
-out := $(call absolute,$(OUT))
-bin := $(call absolute,$(BIN))
-pictures := $(call absolute,$(PICTURES))
-scene := $(out)/gallery/scene/viewer.json
-run = $(bin)/$(1) --quiet --threads $(THREADS)
+folder := gallery/
+include $(here)/gallery.mk
 
-readme: $(pictures)/demo.png $(pictures)/samplers.png $(pictures)/gallery.png $(pictures)/viewer.png \
-  $(pictures)/relight.png
+views := lamp.exr level.exr environment.exr
+.PHONY: demo gallery_picture gallery/scene/viewer.json $(views) viewer.png light.haar turning.png
+readme: demo gallery_picture viewer.png turning.png
 
-$(out) $(pictures):
-	mkdir -p $@
+# Uses the programs in build/release, which it builds first.
+demo:
+	$(step) update demo/demo.png demo/contact-sheet.png -- "$$here/demo.sh" "$$bin/haarrender" -- \
+	  bash "$$here/demo.sh" "$$out/demo"; \
+	publish demo/demo.png "$$pictures/demo.png"; publish demo/contact-sheet.png "$$pictures/samplers.png"
 
-$(out)/demo.made: $(here)/demo.sh $(bin)/haarrender | $(out)
-	bash $< $(out)/demo
-	touch $@
-$(pictures)/demo.png: $(out)/demo.made | $(pictures)
-	cp $(out)/demo/demo.png $@
-$(pictures)/samplers.png: $(out)/demo.made | $(pictures)
-	cp $(out)/demo/contact-sheet.png $@
+gallery_picture: gallery_sheet
+	$(step) cd -- "$$out"; publish gallery/gallery.png "$$pictures/gallery.png"
 
-# Its BRDFs and probes serve the scenes below.
-$(out)/gallery.made: $(here)/gallery.mk $(bin)/haarrender | $(out)
-	$(MAKE) --no-print-directory -C $(here) gallery OUT=$(out)/gallery BIN=$(bin)
-	touch $@
-$(pictures)/gallery.png: $(out)/gallery.made | $(pictures)
-	cp $(out)/gallery/gallery.png $@
-$(scene): $(here)/scenes/viewer.json $(out)/gallery.made
-	cp $< $@
+# The BRDFs and probes of the gallery are in the scene below, too.
+gallery/scene/viewer.json: $(sources) $(trees)
+	$(step) update $@ -- "$$here/scenes/viewer.json" -- cp -- "$$here/scenes/viewer.json" $@
 
-$(out)/lamp.exr: flags =
-$(out)/level.exr: flags = --level 4
-$(out)/environment.exr: flags = --environment
-$(out)/lamp.exr $(out)/level.exr $(out)/environment.exr: $(scene) $(bin)/haarview
-	$(call run,haarview) $< --frame $@ $(flags) >$(@:.exr=.txt)
-$(pictures)/viewer.png: $(out)/lamp.exr $(out)/level.exr $(out)/environment.exr | $(pictures)
-	$(call run,haarsheet) $^ --caption "lamp" --caption "lamp, level 4" --caption "environment" \
-	  --columns 3 --tone-map filmic -o $@ >/dev/null
+$(views): flags =
+level.exr: flags = --level 4
+environment.exr: flags = --environment
+$(views): gallery/scene/viewer.json
+	$(step) update $@ $(@:.exr=.txt) -- $< $(sources) $(trees) -- haarview $< --frame $@ $(flags)
+viewer.png: $(views)
+	$(step) update $@ -- $^ -- haarsheet $^ --caption "lamp" --caption "lamp, level 4" \
+	  --caption "environment" --columns 3 --tone-map filmic -o $@; publish $@ "$$pictures/viewer.png"
 
-$(out)/light.haar: $(scene) $(bin)/haarrelight
-	$(bin)/haarrelight build $< --quiet --threads $(THREADS) --vary light -o $@ >$(@:.haar=.txt)
-$(pictures)/relight.png: $(out)/light.haar | $(pictures)
-	$(bin)/haarrelight sweep $< --quiet --threads $(THREADS) --scene $(scene) --frames 6 --on-sheet 6 \
-	  -o $(out)/turning.png >/dev/null
-	cp $(out)/turning.png $@
+light.haar: gallery/scene/viewer.json
+	$(step) update $@ light.txt -- $< $(sources) $(trees) -- haarrelight build $< --vary light -o $@
+turning.png: light.haar
+	$(step) update $@ -- $< gallery/scene/viewer.json -- haarrelight sweep $< --scene gallery/scene/viewer.json \
+	  --frames 6 --on-sheet 6 -o $@; publish $@ "$$pictures/relight.png"

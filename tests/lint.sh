@@ -14,6 +14,8 @@ deadline=$(($(date +%s) + seconds))
 left=$(mktemp)
 trap 'rm -f "$left"' EXIT
 mkdir -p "$stamps"
+# clang-tidy cannot read the compiler's precompiled headers.
+sed 's# -Winvalid-pch -include [^ ]*cmake_pch\.hxx##' "$build/compile_commands.json" >"$stamps/compile_commands.json"
 
 # Lines "source header…" with paths from the root, the project's own files only.
 dependencies() {
@@ -46,7 +48,7 @@ lint_one() {
   [ ! -e "$stamps/$key" ] || return 0
   if [ "$seconds" -gt 0 ] && [ "$(date +%s)" -ge "$deadline" ]; then
     echo "$source" >>"$left"
-  elif report=$(clang-tidy -p "$build" --quiet "$source" 2>/dev/null); then
+  elif report=$(clang-tidy -p "$stamps" --quiet "$source" 2>/dev/null); then
     touch "$stamps/$key"
   else
     printf '%s\n' "$report"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Everything that must hold: builds build/release and checks format, headers, lint and tests.
+# Everything that must hold: builds build/release and checks format, scripts, headers, lint and tests.
 # Installs missing Debian packages first. Usage: bash tests/run.sh [ctest arguments]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -24,10 +24,15 @@ check_format() {
     xargs clang-format --dry-run -Werror
 }
 
+check_scripts() {
+  find pipelines tests .ci -name '*.sh' -not -path '*/out/*' -print0 | sort -z | xargs -0 shellcheck .ci/run
+}
+
 bash pipelines/install_packages.sh check
 cmake --preset release
 cmake --build build/release -j "$jobs"
 check format check_format
+check scripts check_scripts
 check headers cmake --build build/release -j "$jobs" --target all_verify_interface_header_sets
 check lint bash tests/lint.sh build/release "$jobs"
 check tests ctest --test-dir build/release --output-on-failure -j "$jobs" "$@"

@@ -4,6 +4,7 @@
 
 #include <brdf/bilateral.h>
 #include <brdf/brdf_maps.h>
+#include <wavelet/out_of_memory.h>
 
 using namespace haarlight;
 
@@ -59,7 +60,8 @@ brdf::BrdfMapOptions map_options(const Options& o) {
 
 int make_maps(const tool::Tool& app, const Options& options) {
   const brdf::BrdfMapOptions map_settings = map_options(options);
-  brdf::MeasuredBrdf table(options.input, options.lookup);
+  auto table = with_memory_for("the cells of " + options.input, 0,
+                               [&] { return brdf::MeasuredBrdf(options.input, options.lookup); });
   tool::Report report;
   report.add("source", table.name()).add("bilateral_asymmetry", brdf::bilateral_asymmetry(table));
   const brdf::BrdfMaps maps(std::move(table), map_settings);

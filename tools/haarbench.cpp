@@ -14,27 +14,57 @@
 #include <wavelet/error.h>
 
 #include <filesystem>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
 
 using namespace haarlight;
 using namespace haarlight::bench;
 
 namespace {
 
-/// Makes the folders and throws now rather than after the work if nothing can be written there.
-void require_writable(const std::string& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder + "/cache", problem);
-  if (problem)
-    throw_output_error(folder, "cannot be made a folder: " + problem.message());
-  for (const char* name : {"/results.json", "/results.csv", "/report.html"})
-    const OutputFile trial(folder + name);
-}
+/// The output folder, its cache and their parents. Those that were made here and are still empty at
+/// the end, since the run failed early, are removed.
+class OutputFolders {
+public:
+  OutputFolders() = default;
+  OutputFolders(const OutputFolders&) = delete;
+  OutputFolders& operator=(const OutputFolders&) = delete;
+  ~OutputFolders() {
+    for (auto folder = m_made.rbegin(); folder != m_made.rend(); ++folder)
+      ::rmdir(folder->c_str()); // fails unless it is empty
+  }
+
+  /// Makes the folders, and throws before the work if nothing can be written there.
+  void make(const tool::Tool& app, const std::string& folder) {
+    std::filesystem::path parent;
+    for (const std::filesystem::path& name : std::filesystem::path(folder) / "cache") {
+      parent /= name;
+      std::error_code problem;
+      if (std::filesystem::is_directory(parent, problem))
+        continue;
+      if (std::filesystem::create_directory(parent, problem))
+        m_made.push_back(parent);
+      if (problem)
+        throw_output_error(folder, "cannot be made a folder: " + problem.message());
+    }
+    for (const char* name : {"/results.json", "/results.csv", "/report.html"}) {
+      app.writes("--output", folder + name);
+      const OutputFile trial(folder + name);
+    }
+  }
+
+private:
+  std::vector<std::filesystem::path> m_made; ///< parents first
+};
 
 /// A scene file that is broken is told of before any long work, too.
-void check_scenes(const Plan& plan) {
+void check_scenes(const tool::Tool& app, const Plan& plan) {
   for (const std::string& word : plan.scenes) {
     renderer::SceneDescription scene = scene_of(word);
     tool::set_film_size(plan.size, scene);
+    tool::check_sources(app, scene);
   }
 }
 
@@ -78,9 +108,10 @@ std::vector<PairResult> measure_all(const tool::Tool& app, const Plan& plan,
 
 int compare_samplers(const tool::Tool& app, Plan& plan) {
   check(plan);
-  check_scenes(plan);
+  check_scenes(app, plan);
   Collection collection = open_subjects(plan);
-  require_writable(plan.folder);
+  OutputFolders folders;
+  folders.make(app, plan.folder);
   make_trees(plan, Cache(app, plan.folder + "/cache", plan.cache), collection);
   const std::vector<PairResult> pairs = measure_all(app, plan, collection);
   const std::vector<Row> rows = rows_of(pairs); // verdicts point into them

@@ -28,7 +28,7 @@ void declare(tool::Tool& app, Options& options) {
   app.values(options.input.tree_b, "--tree-b", "Column and row in B, where they are others", 2, 0,
              65535);
   tool::add_compare_bounds(app, options.bounds);
-  app.text(
+  app.optional_output(
       options.image, "--image", "OUT.png|OUT.exr",
       "Write a picture of the map that differs most, or of --tree: a .png shows A, B and B - A "
       "in false colours, an .exr holds B - A as R, G, B and the maps as A.R ... and B.R ...");

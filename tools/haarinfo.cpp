@@ -39,16 +39,18 @@ void declare(tool::Tool& app, Options& options) {
       "Level of reconstructions, 2^level pixels a side [the finest; for a picture of the whole "
       "set the finest that stays within 2048 pixels a side]",
       0, 13);
-  app.text(
+  app.optional_output(
       options.image, "--image", "OUT.png|OUT.exr",
       "Write a picture of the tree or of the whole set; a .png is scaled to a mean of 0.18 and "
       "tone mapped, an .exr holds the values");
-  app.text(options.page, "--html", "REPORT.html",
-           "Write a page with pictures, figures by level, the error by coefficients kept and, of "
-           "BRDF sets, lobes; it needs no other file. Pictures are at most 1024 pixels a side");
-  app.text(options.reference, "--against", "MAPS.exr|OTHER.haar",
-           "With --html: show the three maps that differ most from these, which the trees were "
-           "made of");
+  app.optional_output(
+      options.page, "--html", "REPORT.html",
+      "Write a page with pictures, figures by level, the error by coefficients kept and, of "
+      "BRDF sets, lobes; it needs no other file. Pictures are at most 1024 pixels a side");
+  app.optional_input(
+      options.reference, "--against", "MAPS.exr|OTHER.haar",
+      "With --html: show the three maps that differ most from these, which the trees were "
+      "made of");
   app.choice(options.dump, "--dump", {{"csv", Dump::Csv}},
              "Print all differences in place of the report: column,row,level,x,y,type,r,g,b");
   app.offer_json();
@@ -129,10 +131,13 @@ int inspect(const tool::Tool& app, const Options& options) {
 
 int look_into(const tool::Tool& app, const Options& options) {
   tool::check_picture_path(options.image, "--image");
-  if (!options.page.empty() && !tool::has_extension(options.page, ".html"))
+  if (!options.page.empty() && options.page != standard_output &&
+      !tool::has_extension(options.page, ".html"))
     throw tool::UsageError("--html: \"" + options.page + "\" does not end in .html");
   if (!options.reference.empty() && options.page.empty())
     throw tool::UsageError("--against needs --html");
+  if (options.path == "-" && options.reference == "-")
+    throw tool::UsageError("two inputs are standard input ('-')");
   return options.validate ? validate(app, options.path) : inspect(app, options);
 }
 

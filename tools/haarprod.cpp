@@ -26,7 +26,7 @@ void declare(tool::Tool& app, Options& options) {
   app.inputs(options.trees, "FILE.haar",
              "Trees to multiply, all in one frame: FILE.haar[I,J] is the tree of column I and row "
              "J, FILE.haar the first");
-  app.text(options.output, "-o,--output", "OUT.haar", "Write the product as a tree");
+  app.optional_output(options.output, "-o,--output", "OUT.haar", "Write the product as a tree");
   app.flag(options.integral, "--integral", "Print the product's integral; the default without -o");
   app.value(options.factor, "--factor",
             "Multiply the first K trees to T1 and the rest to T2, print their inner product, which "
@@ -108,6 +108,8 @@ int multiply(const tool::Tool& app, const Options& options) {
   if (const tool::NamedTree* tree = tool::out_of_frame(trees))
     app.note(tree->label() +
              ": is in another frame than the trees before it; all should share one");
+  for (const tool::NamedTree& tree : trees)
+    app.reads("FILE.haar", tree.set->path());
   const std::vector<wavelet::TreeView> views = views_of(trees);
   const std::size_t split = static_cast<std::size_t>(options.factor.value_or(0));
   if (options.factor && split >= views.size())

@@ -2,11 +2,13 @@
 #include <render/film_output.h>
 #include <render/integrator.h>
 #include <render/render_options.h>
+#include <support/output_size.h>
 #include <support/program.h>
 #include <support/progress.h>
 
 #include <renderer/render.h>
 #include <renderer/scene_file.h>
+#include <wavelet/out_of_memory.h>
 #include <wavelet/output_file.h>
 
 using namespace haarlight;
@@ -24,6 +26,7 @@ struct Options {
   SourceLookups lookups;
   RenderOptions render;
   tool::IntegratorOptions integrator;
+  bool force = false;
 };
 
 void declare(tool::Tool& app, Options& options) {
@@ -39,8 +42,9 @@ void declare(tool::Tool& app, Options& options) {
              {{"nearest", probe::Lookup::Nearest}, {"bilinear", probe::Lookup::Bilinear}},
              "How the probe is looked up");
   app.text(options.size, "--size", "WxH", "Size of the film in pixels, in place of the scene's");
-  app.text(options.png, "--png", "OUT.png", "Write a tone-mapped preview too");
+  app.optional_output(options.png, "--png", "OUT.png", "Write a tone-mapped preview too");
   app.value(options.exposure, "--exposure", "Stops that the preview is brightened by", -30, 30);
+  tool::add_force(app, options.force);
   app.offer_json();
 }
 
@@ -63,17 +67,26 @@ void check(const tool::Tool& app, Options& options) {
 int render_scene(const tool::Tool& app, Options& options) {
   check(app, options);
   SceneDescription description = load_scene(options.scene);
+  tool::check_sources(app, description);
   if (!options.size.empty())
     tool::set_film_size(options.size, description);
-  const LoadedScene scene(description, options.lookups, options.render.sampler,
-                          needs_unshadowed(options.render.estimator),
-                          tool::needs_of(options.integrator));
+  tool::require_room(options.output, tool::film_size(description.width, description.height),
+                     options.force);
+  const LoadedScene scene = with_memory_for("the light and the materials of the scene", 0, [&] {
+    return LoadedScene(description, options.lookups, options.render.sampler,
+                       needs_unshadowed(options.render.estimator),
+                       tool::needs_of(options.integrator));
+  });
   if (!scene.light().note().empty())
     app.detail(scene.light().note());
   tool::ProgressBar bar(app, "rendering");
-  const RenderResult result = tool::render_by(
-      options.integrator, scene, options.render, description.width, description.height,
-      [&](double share) { bar(static_cast<int>(1000 * share), 1000); });
+  const std::string film = "rendering a film of " + std::to_string(description.width) + " x " +
+                           std::to_string(description.height) + " pixels";
+  const RenderResult result = with_memory_for(film, 0, [&] {
+    return tool::render_by(options.integrator, scene, options.render, description.width,
+                           description.height,
+                           [&](double fraction) { bar(static_cast<int>(1000 * fraction), 1000); });
+  });
   tool::write_film_exr(options.output, result, description, options.render,
                        tool::texts_of(options.integrator));
   if (!options.png.empty())

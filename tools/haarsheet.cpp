@@ -30,9 +30,10 @@ void declare(tool::Tool& app, Options& options) {
   app.output(options.output, "OUT.png", "Contact sheet to write");
   app.texts(options.captions, "--caption", "TEXT",
             "Caption of a picture, one option for each in their order [the file's name]");
-  app.text(options.reference, "--reference", "IN.exr",
-           "Print each picture's root mean square error relative to this one, pixel by pixel, and "
-           "add it to the captions");
+  app.optional_input(
+      options.reference, "--reference", "IN.exr",
+      "Print each picture's root mean square error relative to this one, pixel by pixel, and "
+      "add it to the captions");
   app.value(options.sheet.columns, "--columns", "Pictures per row; 0 = as square as possible", 0,
             1000);
   app.value(options.sheet.scale, "--font-scale", "Pixels per pixel of the font", 1, 16);

@@ -109,6 +109,7 @@ int view_scene(const tool::Tool& app, const Options& options) {
   if (shows_window(options))
     return view_in_window(app, options);
   const ViewScene scene(options.input);
+  tool::check_sources(app, scene.description());
   const PageOptions shown = shown_of(scene, options);
   tool::Report report;
   report.add("width", shown.film.width, "px")

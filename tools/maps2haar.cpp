@@ -1,5 +1,6 @@
 // maps2haar: a map set to sparse Haar trees, and .haar files from one form to the other.
 #include <support/map_output.h>
+#include <support/output_size.h>
 #include <support/progress.h>
 #include <support/tool.h>
 #include <support/words.h>
@@ -8,8 +9,6 @@
 
 #include <wavelet/error.h>
 #include <wavelet/packed_set.h>
-
-#include <filesystem>
 
 using namespace haarlight;
 
@@ -27,6 +26,7 @@ void declare(tool::Tool& app, Options& o) {
             "side; or, with --pack or --unpack, a .haar file");
   app.output(o.output.path, "OUT.haar", "Trees to write");
   tool::add_compress_options(app, o.output);
+  tool::add_force(app, o.output.force);
   app.flag(o.unpack, "--unpack", "Give a packed .haar file its mapped form back");
   app.offer_json();
 }
@@ -46,7 +46,7 @@ int convert(const tool::Tool& app, const Options& o, wavelet::FileForm form) {
   file.commit();
   tool::Report report;
   report.add("source", base_name(o.input))
-      .add("source_bytes", static_cast<std::uint64_t>(std::filesystem::file_size(o.input)))
+      .add("source_bytes", static_cast<std::uint64_t>(InputFile(o.input).size()))
       .add("form", packed ? "mapped" : "packed")
       .add("bytes", bytes)
       .add("output", o.output.path);
@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
   declare(app, options);
   return app.run(argc, argv, [&] {
     const std::string& path = options.output.path;
-    if (!tool::has_extension(path, ".haar"))
+    options.output.stream_trees = true;
+    if (path != standard_output && !tool::has_extension(path, ".haar"))
       throw tool::UsageError("--output: '" + path + "' does not end in .haar");
     if (options.unpack && options.output.compression.packed)
       throw tool::UsageError("--pack and --unpack exclude each other");

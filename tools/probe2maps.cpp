@@ -4,6 +4,7 @@
 
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
+#include <wavelet/out_of_memory.h>
 
 #include <bit>
 
@@ -17,12 +18,14 @@ using MappingChoice = std::optional<probe::Mapping>;
 struct Options {
   std::string input;
   MappingChoice mapping;
+  probe::ImageChoice image;
   probe::MapOptions maps;
   tool::MapOutput output;
 };
 
 void declare(tool::Tool& app, Options& o) {
-  app.input(o.input, "IN", "Light probe: Radiance RGBE, OpenEXR, PFM or what OpenImageIO reads");
+  app.input(o.input, "IN",
+            "Light probe: Radiance RGBE, OpenEXR, PFM, TIFF, PNG or JPEG, known by its content");
   tool::add_map_output(app, o.output);
   app.value(o.maps.size, "--size",
             "Pixels along a map's side, a power of two from 4; 0 = 512 to 2048, losing nothing, or "
@@ -39,6 +42,11 @@ void declare(tool::Tool& app, Options& o) {
               {"mirrorball", probe::Mapping::MirrorBall},
               {"octahedral", probe::Mapping::Octahedral}},
              "How the picture shows the sphere; auto judges by aspect and content");
+  app.text(o.image.layer, "--layer", "NAME",
+           "Layer of an OpenEXR file: the channels NAME.R, NAME.G, NAME.B or NAME.Y. Default: R, "
+           "G, B without a layer, else the only layer with these, else Y");
+  app.text(o.image.part, "--part", "N|NAME",
+           "Part of an OpenEXR file by name or number, page of a TIFF file by number; from 0");
 }
 
 void check(const probe::MapOptions& maps) {
@@ -47,16 +55,32 @@ void check(const probe::MapOptions& maps) {
     throw tool::UsageError("--size must be a power of two from 4, or 0");
 }
 
+/// For errors of memory.
+std::string maps_text(int size) {
+  const std::string side = std::to_string(size);
+  return size == 0 ? "maps that lose nothing of the probe"
+                   : "a map of " + side + " x " + side + " pixels";
+}
+
+/// 0 = unknown.
+std::uint64_t map_bytes(int size) {
+  return 3 * sizeof(float) * static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size);
+}
+
 int make_maps(const tool::Tool& app, const Options& options) {
   check(options.maps);
-  const probe::LoadedProbe loaded = probe::read_probe(options.input, options.mapping);
+  const probe::LoadedProbe loaded = with_memory_for("the pixels of " + options.input, 0, [&] {
+    return probe::read_probe(options.input, options.mapping, probe::Lookup::Nearest, options.image);
+  });
   app.note(options.input + ": " + loaded.mapping_reason);
   for (const std::string& note : loaded.notes)
     app.note(options.input + ": " + note);
   tool::Report report;
   report.add("source", loaded.source.get("source"))
       .add("mapping", probe::mapping_name(loaded.probe.mapping()));
-  const probe::ProbeMaps maps(loaded.probe, options.maps, loaded.source);
+  const auto maps =
+      with_memory_for(maps_text(options.maps.size), map_bytes(options.maps.size),
+                      [&] { return probe::ProbeMaps(loaded.probe, options.maps, loaded.source); });
   return tool::write_map_set(app, maps, options.output, report);
 }
 

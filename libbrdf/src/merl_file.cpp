@@ -28,7 +28,7 @@ struct Dimensions {
 };
 
 Dimensions read_dimensions(const InputFile& file) {
-  const auto bytes = file.bytes();
+  const auto bytes = file.beginning(header_size);
   if (bytes.size() < header_size)
     throw_input_error(file.path(), "file ends inside the 12-byte header of a MERL file",
                       bytes.size());
@@ -59,7 +59,7 @@ void check_size(const InputFile& file, const Dimensions& dims) {
   const std::uint64_t cells =
       std::uint64_t{merl_theta_h_bins} * merl_theta_d_bins * static_cast<std::uint64_t>(dims.phi_d);
   const std::uint64_t wanted = header_size + 3 * sizeof(double) * cells;
-  const std::uint64_t found = file.bytes().size();
+  const std::uint64_t found = file.size();
   if (found != wanted)
     throw_input_error(file.path(),
                       (found < wanted ? "file ends early: has " : "data after the end: has ") +

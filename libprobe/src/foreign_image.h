@@ -1,26 +1,26 @@
 #pragma once
-// The line between this library and the module that links OpenImageIO. Linking it costs a process
-// about 0.3 s and 130 MB before main() begins, so it is loaded only when such a picture is read.
+// Image files decoded by OpenEXR, libtiff, libpng and libjpeg in a separate program, so that a
+// crash of a decoder, or a file that makes it take all memory or time, ends in an Error.
 
-#include <probe/image.h>
+#include "picture_format.h"
+
+#include <probe/read_image.h>
 
 #include <string>
+#include <vector>
 
 namespace haarlight::probe {
 
-/// What the module hands over: pixels as they are in the file, or a message of one line.
 struct ForeignImage {
-  Image image;
-  std::string note;  ///< what was done to the values; empty if nothing
-  std::string error; ///< empty if all went well
+  Image image;                    ///< linear Rec. 709; values are not checked yet
+  std::vector<std::string> notes; ///< how the values were interpreted, a sentence each
 };
 
-/// The function the module exports.
-using ReadForeign = void (*)(const std::string& path, ForeignImage& result);
-inline constexpr const char* read_foreign_name = "haarlight_read_foreign_image";
-
-/// Reads a picture through the module, loading it if this is the first.
-/// @throws Error(Input)
-ForeignImage read_foreign_image(const std::string& path);
+/// Starts the reader program on a file and waits for its result. The program runs under limits of
+/// memory (by the size that the header of the file states) and of time (by the size of the file).
+/// @throws Error(Input) if the file cannot be decoded, or the program crashes or exceeds a limit;
+///         std::runtime_error if the program cannot be started
+ForeignImage read_foreign_image(const std::string& path, PictureFormat format,
+                                const ImageChoice& choice);
 
 } // namespace haarlight::probe

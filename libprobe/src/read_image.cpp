@@ -1,6 +1,8 @@
 #include <probe/read_image.h>
 
 #include "foreign_image.h"
+#include "pfm_reader.h"
+#include "picture_format.h"
 
 #include <probe/rgbe.h>
 
@@ -22,6 +24,35 @@ namespace {
                               ", radiance must be finite");
 }
 
+void refuse_choice(const ImageChoice& choice, const std::string& path) {
+  if (!choice.layer.empty() || !choice.part.empty())
+    throw_input_error(path, "has no layers or parts to choose from");
+}
+
+LoadedImage load(const std::string& path, const ImageChoice& choice) {
+  const InputFile file(path);
+  if (file.bytes().empty())
+    throw_input_error(path, "is empty, an image is needed");
+  LoadedImage loaded;
+  loaded.name = base_name(path);
+  loaded.hash = hash_text(file.bytes());
+  if (is_rgbe(file.bytes())) {
+    refuse_choice(choice, path);
+    loaded.image = read_rgbe(file.bytes(), path);
+    return loaded;
+  }
+  const PictureFormat format = detect_format(file.bytes(), path);
+  if (format == PictureFormat::Pfm) {
+    refuse_choice(choice, path);
+    loaded.image = read_pfm(file.bytes(), path, loaded.notes);
+    return loaded;
+  }
+  ForeignImage foreign = read_foreign_image(path, format, choice);
+  loaded.image = std::move(foreign.image);
+  loaded.notes = std::move(foreign.notes);
+  return loaded;
+}
+
 } // namespace
 
 std::size_t clean_pixels(Image& image, const std::string& path) {
@@ -36,21 +67,8 @@ std::size_t clean_pixels(Image& image, const std::string& path) {
   return negative;
 }
 
-LoadedImage read_image(const std::string& path) {
-  const InputFile file(path);
-  if (file.bytes().empty())
-    throw_input_error(path, "is empty, a picture is needed");
-  LoadedImage loaded;
-  loaded.name = base_name(path);
-  loaded.hash = hash_text(file.bytes());
-  if (is_rgbe(file.bytes())) {
-    loaded.image = read_rgbe(file.bytes(), path);
-  } else {
-    ForeignImage foreign = read_foreign_image(path);
-    loaded.image = std::move(foreign.image);
-    if (!foreign.note.empty())
-      loaded.notes.push_back(foreign.note);
-  }
+LoadedImage read_image(const std::string& path, const ImageChoice& choice) {
+  LoadedImage loaded = load(path, choice);
   const std::size_t negative = clean_pixels(loaded.image, path);
   if (negative > 0)
     loaded.notes.push_back(std::to_string(negative) + " negative values were set to 0");

@@ -1,11 +1,10 @@
 #include <probe/read_probe.h>
 
-#include <probe/read_image.h>
-
 namespace haarlight::probe {
 
-LoadedProbe read_probe(const std::string& path, std::optional<Mapping> mapping, Lookup lookup) {
-  LoadedImage loaded = read_image(path);
+LoadedProbe read_probe(const std::string& path, std::optional<Mapping> mapping, Lookup lookup,
+                       const ImageChoice& choice) {
+  LoadedImage loaded = read_image(path, choice);
   const DetectedMapping taken =
       mapping
           ? DetectedMapping{*mapping, "mapping " + mapping_name(*mapping) + ", as was asked for"}

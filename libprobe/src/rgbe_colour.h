@@ -1,18 +1,12 @@
 #pragma once
 // Colour spaces of Radiance pictures.
 
+#include "colour_space.h"
+
 #include <array>
 #include <optional>
 
 namespace haarlight::probe {
-
-/// A 3×3 matrix, row by row, that multiplies a colour as a column.
-using ColourMatrix = std::array<std::array<double, 3>, 3>;
-
-/// CIE XYZ to linear Rec. 709 RGB, white D65 (IEC 61966-2-1).
-inline constexpr ColourMatrix xyz_to_rec709 = {{{3.2404542, -1.5371385, -0.4985314},
-                                                {-0.9692660, 1.8760108, 0.0415560},
-                                                {0.0556434, -0.2040259, 1.0572252}}};
 
 /// CIE chromaticities x, y of red, green, blue and white, as in a PRIMARIES line.
 using Primaries = std::array<double, 8>;

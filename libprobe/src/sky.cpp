@@ -1,5 +1,8 @@
 #include "sky.h"
 
+#include "colour_space.h"
+#include "elementary.h"
+
 #include <wavelet/trigonometry.h>
 
 #include <algorithm>
@@ -14,33 +17,6 @@ constexpr double unit = 20;
 /// Angular radius of the sun's disk: 0.53° across.
 constexpr float sun_radius = 0.265F * pi / 180;
 constexpr double ground_albedo = 0.2;
-
-/// e^x by its series: the C library's own differs in the last bit from CPU to CPU.
-double exponential(double x) {
-  const double halvings = 64;
-  const double t = std::clamp(x, -500.0, 500.0) / halvings;
-  double sum = 1;
-  for (int k = 18; k > 0; --k)
-    sum = 1 + sum * t / k;
-  for (int i = 0; i < 6; ++i)
-    sum *= sum;
-  return sum;
-}
-
-/// x^p for x > 0 by way of the series of the logarithm.
-double power(double x, double p) {
-  int exponent = 0;
-  const double m = std::frexp(x, &exponent);
-  const double t = (m - 0.75) / (m + 0.75);
-  double sum = 0;
-  double odd = t;
-  for (int k = 1; k < 40; k += 2) {
-    sum += odd / k;
-    odd *= t * t;
-  }
-  constexpr double log_three_quarters = -0.28768207245178092744;
-  return exponential(p * (2 * sum + log_three_quarters + exponent * std::numbers::ln2));
-}
 
 /// Perez et al.: relative luminance by the zenith angle θ and the angle γ from the sun.
 struct Perez {
@@ -72,10 +48,7 @@ constexpr double zenith_y[3][4] = {{0.00275, -0.00610, 0.00317, 0},
 Rgb rgb_of(double x, double y, double luminance_y) {
   const double big_x = x / y * luminance_y;
   const double big_z = (1 - x - y) / y * luminance_y;
-  const Eigen::Array3d rgb(3.2404542 * big_x - 1.5371385 * luminance_y - 0.4985314 * big_z,
-                           -0.9692660 * big_x + 1.8760108 * luminance_y + 0.0415560 * big_z,
-                           0.0556434 * big_x - 0.2040259 * luminance_y + 1.0572252 * big_z);
-  return rgb.max(0).cast<float>();
+  return rec709_from_xyz({big_x, luminance_y, big_z}).max(0).cast<float>();
 }
 
 class SunSky : public Scene {

@@ -7,6 +7,8 @@ namespace haarlight::wavelet {
 
 /// Stored halves stay below it, which leaves room below the half's 65504.
 inline constexpr float largest_stored_half = 32768;
+/// Magnitudes up to this one are rounded to zero.
+inline constexpr float smallest_stored_half = 0x1p-25F;
 
 /// A power of two that brings the largest difference just under what a half can hold; 1 for floats.
 float coefficient_scale(CoefficientType type, float largest_difference);

@@ -3,6 +3,13 @@
 namespace haarlight {
 namespace {
 
+/// "-" stands for a standard stream.
+std::string shown(const std::string& path, ErrorKind kind) {
+  if (path != "-")
+    return path;
+  return kind == ErrorKind::Input ? "standard input" : "standard output";
+}
+
 std::string compose(const std::string& path, const std::string& message,
                     std::optional<std::uint64_t> offset) {
   std::string text = path.empty() ? "" : path + ": ";
@@ -15,8 +22,8 @@ std::string compose(const std::string& path, const std::string& message,
 
 Error::Error(ErrorKind kind, std::string path, const std::string& message,
              std::optional<std::uint64_t> offset)
-    : std::runtime_error(compose(path, message, offset)), m_kind(kind), m_path(std::move(path)),
-      m_offset(offset) {}
+    : std::runtime_error(compose(shown(path, kind), message, offset)), m_kind(kind),
+      m_path(std::move(path)), m_offset(offset) {}
 
 void throw_input_error(const std::string& path, const std::string& message,
                        std::optional<std::uint64_t> offset) {

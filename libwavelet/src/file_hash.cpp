@@ -1,6 +1,7 @@
 #include <wavelet/file_hash.h>
 
 #include <wavelet/error.h>
+#include <wavelet/input_file.h>
 
 #include <xxhash.h>
 
@@ -29,8 +30,8 @@ std::string digits_of(std::uint64_t hash) {
 } // namespace
 
 std::string file_hash(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+      std::fopen(openable_path(path).c_str(), "rb"), std::fclose);
   const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
                                                                               XXH3_freeState);
   if (!file)

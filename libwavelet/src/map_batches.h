@@ -2,6 +2,7 @@
 // The maps of a set, a few at a time.
 
 #include <wavelet/map_set.h>
+#include <wavelet/out_of_memory.h>
 #include <wavelet/parallel.h>
 
 #include <algorithm>
@@ -9,6 +10,15 @@
 #include <vector>
 
 namespace haarlight::wavelet {
+
+/// For errors of memory.
+inline std::string map_text(int size) {
+  return "a map of " + std::to_string(size) + " x " + std::to_string(size) + " pixels";
+}
+
+inline std::uint64_t map_bytes(int size) {
+  return 3 * sizeof(float) * static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size);
+}
 
 /// Calls work(place, slot) for every map, from several threads, and take(slot) for each in the
 /// set's order, so that sums do not depend on the number of threads.
@@ -22,7 +32,9 @@ void for_each_map(const SetInfo& info, int per_thread, const Progress& progress,
     const int filled = std::min(static_cast<int>(batch.size()), count - begin);
     parallel_for(static_cast<std::size_t>(filled), [&](std::size_t i) {
       const int index = begin + static_cast<int>(i);
-      work(MapPlace{index % info.columns, index / info.columns}, batch[i]);
+      with_memory_for(map_text(info.size), map_bytes(info.size), [&] {
+        work(MapPlace{index % info.columns, index / info.columns}, batch[i]);
+      });
     });
     for (int i = 0; i < filled; ++i)
       take(batch[static_cast<std::size_t>(i)]);

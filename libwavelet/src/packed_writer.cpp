@@ -40,11 +40,9 @@ PackedSetWriter::PackedSetWriter(OutputFile& file, const SetInfo& info, int chan
     : m_file(file), m_layout(std::make_unique<SetLayout>(info, channels, type)) {
   if (m_layout->text().size() > largest_packed_text)
     throw_output_error(file.path(), "cannot be packed: its text section exceeds 1 MiB");
-  std::vector<std::byte> frame;
-  append_frame(std::as_bytes(std::span(m_layout->text())), frame);
-  m_text_bytes = static_cast<std::uint32_t>(frame.size());
+  append_frame(std::as_bytes(std::span(m_layout->text())), m_text_frame);
   m_file.seek(sizeof(PackedHeader));
-  m_file.write(frame.data(), frame.size());
+  m_file.write(m_text_frame.data(), m_text_frame.size());
 }
 
 PackedSetWriter::~PackedSetWriter() = default;
@@ -67,10 +65,15 @@ void PackedSetWriter::close_block() {
 }
 
 void PackedSetWriter::flush() {
-  std::vector<std::vector<std::byte>> packed(m_blocks.size());
+  std::vector<EncodedBlock> packed(m_blocks.size());
   parallel_for(packed.size(), [&](std::size_t i) { packed[i] = encode_block(m_blocks[i]); });
-  for (const auto& bytes : packed)
-    m_file.write(bytes.data(), bytes.size());
+  for (const EncodedBlock& block : packed) {
+    m_empty_nodes += block.empty_nodes;
+    m_file.write(block.bytes.data(), block.bytes.size());
+  }
+  if (m_empty_nodes > largest_empty_nodes)
+    throw_output_error(m_file.path(), "cannot be packed: more than 2^18 nodes have no coefficient "
+                                      "in their subtree");
   m_block_count += static_cast<std::uint32_t>(packed.size());
   m_blocks.clear();
 }
@@ -84,11 +87,10 @@ void PackedSetWriter::finish() {
   header.version = packed_version;
   header.header_bytes = sizeof(PackedHeader);
   header.file_bytes = m_file.position();
-  header.text_frame_bytes = m_text_bytes;
+  header.text_frame_bytes = static_cast<std::uint32_t>(m_text_frame.size());
   header.blocks = m_block_count;
   header.mapped = m_layout->header();
-  header.header_checksum = hash_bytes(
-      std::as_bytes(std::span(&header, 1)).first(offsetof(PackedHeader, header_checksum)));
+  header.header_checksum = packed_header_checksum(header, m_text_frame);
   m_file.seek(0);
   m_file.write(&header, sizeof header);
   m_file.seek(header.file_bytes);

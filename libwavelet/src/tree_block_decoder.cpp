@@ -22,16 +22,36 @@ public:
         m_type(static_cast<CoefficientType>(set.coefficient_type)),
         m_width(coefficient_bytes(m_type)) {}
 
-  std::vector<Tree> decode() {
+  BlockSizes scan() {
     read_header();
     read_records();
-    const Bytes forms = stream(1, m_trees.size() * m_set.levels);
-    read_structure(stream(2, m_nodes));
+    require_size(1, m_records.size() * m_set.levels);
+    require_size(2, m_sizes.nodes);
+    m_sizes.values = frame_content_size(m_frames[3]).value_or(0);
+    require(m_sizes.values <= 3 * m_sizes.nodes,
+            "frame does not hold as many bytes as the trees of its block need");
+    for (std::size_t k = 3; k < m_frames.size(); ++k)
+      require_size(k, m_sizes.values);
+    return m_sizes;
+  }
+
+  DecodedBlock decode() {
+    scan();
+    const Bytes forms = stream(1, m_records.size() * m_set.levels);
+    m_structure = stream(2, m_sizes.nodes);
+    require(std::none_of(m_structure.begin(), m_structure.end(),
+                         [](std::byte b) { return (b & std::byte{128}) != std::byte{0}; }),
+            "structure byte has bit 7 set");
+    const auto empty = count_empty_nodes(m_structure);
+    require(empty.has_value(), "child masks do not add up to the number of nodes");
+    require(*empty <= largest_empty_nodes, empty_nodes_message);
+    start_trees();
+    read_structure();
     read_planes();
     read_values(forms);
     for (const Tree& tree : m_trees)
       m_rules.check_coefficients(tree.view(), m_offset);
-    return std::move(m_trees);
+    return {std::move(m_trees), *empty};
   }
 
 private:
@@ -55,9 +75,13 @@ private:
     require(next == m_block.size(), "block does not end with its last frame");
   }
 
-  Bytes stream(std::size_t index, std::uint64_t size) const {
-    require(frame_claims(m_frames[index], size),
+  void require_size(std::size_t frame, std::uint64_t size) const {
+    require(frame_content_size(m_frames[frame]) == size,
             "frame does not hold as many bytes as the trees of its block need");
+  }
+
+  Bytes stream(std::size_t index, std::uint64_t size) const {
+    require_size(index, size);
     Bytes content(size);
     require(read_frame(m_frames[index], content), "frame is damaged");
     return content;
@@ -66,24 +90,28 @@ private:
   void read_records() {
     const std::size_t count = m_header.trees;
     const Bytes planes = stream(0, count * sizeof(TreeRecord));
-    std::vector<TreeRecord> records(count);
-    auto* bytes = reinterpret_cast<std::byte*>(records.data());
+    m_records.resize(count);
+    auto* bytes = reinterpret_cast<std::byte*>(m_records.data());
     for (std::size_t i = 0; i < planes.size(); ++i)
       bytes[i % count * sizeof(TreeRecord) + i / count] = planes[i];
-    std::uint64_t mapped = 0;
-    for (const TreeRecord& r : records) {
+    for (const TreeRecord& r : m_records) {
       m_rules.check_entry({0, 0, r.node_count, r.scale, {r.mean[0], r.mean[1], r.mean[2]}, 0},
                           m_offset);
       require(r.node_count <= ((std::uint64_t{1} << (2 * m_set.levels)) - 1) / 3,
               "tree has more nodes than there are squares");
-      m_nodes += r.node_count;
-      mapped += tree_size(r.node_count, m_set.levels, m_set.channels, m_width);
+      m_sizes.nodes += r.node_count;
+      m_sizes.mapped_bytes += tree_size(r.node_count, m_set.levels, m_set.channels, m_width);
     }
-    require(count == 1 || mapped <= largest_block_bytes, "block holds more than 64 MiB of trees");
-    require(mapped <= m_set.index_offset, "block holds more bytes of trees than the mapped file");
-    m_trees.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-      start_tree(records[i], m_trees[i]);
+    require(count == 1 || m_sizes.mapped_bytes <= largest_block_bytes,
+            "block holds more than 64 MiB of trees");
+    require(m_sizes.mapped_bytes <= m_set.index_offset,
+            "block holds more bytes of trees than the mapped file");
+  }
+
+  void start_trees() {
+    m_trees.resize(m_records.size());
+    for (std::size_t i = 0; i < m_trees.size(); ++i)
+      start_tree(m_records[i], m_trees[i]);
   }
 
   void start_tree(const TreeRecord& record, Tree& tree) const {
@@ -98,8 +126,7 @@ private:
   }
 
   /// Links from child masks, which lie level by level and within a level tree by tree.
-  void read_structure(Bytes structure) {
-    m_structure = std::move(structure);
+  void read_structure() {
     std::size_t next = 0;
     std::vector<std::uint32_t> ends(m_trees.size());
     for (std::size_t i = 0; i < m_trees.size(); ++i)
@@ -117,11 +144,10 @@ private:
     const std::uint32_t level_end = end;
     for (std::uint32_t node = tree.level_begin.back(); node < level_end; ++node, ++next) {
       const auto byte = std::to_integer<std::uint32_t>(m_structure[next]);
-      require(byte < 128, "structure byte has bit 7 set");
       require(!last || (byte & 15U) == 0, "node of the last level has children");
       tree.links[node] = end << 4U | (byte & 15U);
       end += detail::bits_of_nibble(byte & 15U);
-      m_values += detail::bits_of_nibble(byte >> 4U);
+      m_present += detail::bits_of_nibble(byte >> 4U);
     }
     require(end <= tree.links.size(), "child masks do not add up to the number of nodes");
     tree.level_begin.push_back(level_end);
@@ -129,8 +155,10 @@ private:
   }
 
   void read_planes() {
+    require(m_present == m_sizes.values,
+            "frame does not hold as many bytes as the trees of its block need");
     for (std::size_t k = 3; k < m_frames.size(); ++k)
-      m_planes.push_back(stream(k, m_values));
+      m_planes.push_back(stream(k, m_sizes.values));
   }
 
   void read_values(const Bytes& forms) {
@@ -212,17 +240,49 @@ private:
   std::size_t m_width;
   BlockHeader m_header = {};
   std::vector<std::span<const std::byte>> m_frames;
+  std::vector<TreeRecord> m_records;
+  BlockSizes m_sizes;
   std::vector<Tree> m_trees;
   Bytes m_structure;
   std::vector<Bytes> m_planes;
-  std::uint64_t m_nodes = 0;
-  std::uint64_t m_values = 0; ///< coefficients present, all trees
+  std::uint64_t m_present = 0; ///< coefficients present, by the structure
 };
 
 } // namespace
 
-std::vector<Tree> decode_block(std::span<const std::byte> block, const FileHeader& set,
-                               const FileRules& rules, std::uint64_t offset) {
+/// In the order of a block the children of all nodes follow each other, so that one pass from the
+/// last node to the first suffices. The mark of a node says that it is not empty.
+std::optional<std::uint64_t> count_empty_nodes(std::span<std::byte> structure) {
+  constexpr std::byte mark{128};
+  std::uint64_t empty = 0;
+  std::size_t children_end = structure.size();
+  for (std::size_t node = structure.size(); node-- > 0;) {
+    const auto byte = std::to_integer<std::uint32_t>(structure[node]);
+    bool used = byte >> 4U != 0;
+    for (std::uint32_t n = detail::bits_of_nibble(byte & 15U); n > 0; --n) {
+      if (children_end <= node + 1)
+        return std::nullopt;
+      --children_end;
+      used = used || (structure[children_end] & mark) != std::byte{0};
+      structure[children_end] &= ~mark;
+    }
+    if (used)
+      structure[node] |= mark;
+    else
+      ++empty;
+  }
+  for (std::byte& root : structure.first(children_end))
+    root &= ~mark;
+  return empty;
+}
+
+BlockSizes scan_block(std::span<const std::byte> block, const FileHeader& set,
+                      const FileRules& rules, std::uint64_t offset) {
+  return BlockDecoder(block, set, rules, offset).scan();
+}
+
+DecodedBlock decode_block(std::span<const std::byte> block, const FileHeader& set,
+                          const FileRules& rules, std::uint64_t offset) {
   return BlockDecoder(block, set, rules, offset).decode();
 }
 

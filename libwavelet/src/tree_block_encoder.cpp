@@ -22,12 +22,13 @@ public:
         m_width(coefficient_bytes(trees[0].type)),
         m_streams(stream_count(trees[0].channels, trees[0].type)) {}
 
-  Bytes encode() {
+  EncodedBlock encode() {
     append_records();
     for (std::size_t l = 0; l < static_cast<std::size_t>(m_trees[0].levels); ++l)
       for (const Tree& tree : m_trees)
         append_level(tree, l);
-    return assemble();
+    const std::uint64_t empty_nodes = count_empty_nodes(m_streams[2]).value();
+    return {assemble(), empty_nodes};
   }
 
 private:
@@ -171,7 +172,7 @@ private:
 
 } // namespace
 
-std::vector<std::byte> encode_block(std::span<const Tree> trees) {
+EncodedBlock encode_block(std::span<const Tree> trees) {
   assert(!trees.empty());
   return BlockEncoder(trees).encode();
 }

@@ -27,8 +27,8 @@ public:
   }
 
   Tree build(float scale) {
-    mark_squares();
     choose_scale(scale);
+    mark_squares();
     m_tree.level_begin.assign(1, 0);
     std::vector<Square> level;
     if (m_levels > 0 && m_present[0][0] != 0)
@@ -47,10 +47,16 @@ private:
   bool has_detail(int level, int x, int y) const {
     for (int m = 1; m <= 3; ++m) {
       const float* c = coefficient(level, x, y, m);
-      if (c[0] != 0 || c[1] != 0 || c[2] != 0)
+      if (is_stored(c[0]) || is_stored(c[1]) || is_stored(c[2]))
         return true;
     }
     return false;
+  }
+
+  /// False for differences that become zeros in halves.
+  bool is_stored(float difference) const {
+    return difference != 0 && (m_tree.type == CoefficientType::Float ||
+                               std::abs(difference) / m_tree.scale > smallest_stored_half);
   }
 
   /// Which squares have a wavelet in or under them, finest level first.

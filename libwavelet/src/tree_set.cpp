@@ -14,29 +14,31 @@ namespace {
 /// Finds the sections of one file, and refuses it where they are not what they should be.
 class Sections {
 public:
-  explicit Sections(const InputFile& file) : m_bytes(file.bytes()), m_rules(file.path()) {}
+  explicit Sections(const InputFile& file) : m_file(file), m_rules(file.path()) {}
 
   FileHeader header() const {
     FileHeader h = {};
-    m_rules.require(!begins_packed(m_bytes), 0,
+    const auto bytes = m_file.beginning(align_up(sizeof h));
+    m_rules.require(!begins_packed(bytes), 0,
                     "is packed; maps2haar --unpack makes the form that can be used in place");
-    m_rules.require(m_bytes.size() >= 8 && std::memcmp(m_bytes.data(), file_magic, 8) == 0, 0,
+    m_rules.require(bytes.size() >= 8 && std::memcmp(bytes.data(), file_magic, 8) == 0, 0,
                     "is no .haar file: it does not begin with the magic 89 48 41 41 52 0d 0a 1a");
-    m_rules.require(m_bytes.size() >= align_up(sizeof h), m_bytes.size(),
+    m_rules.require(bytes.size() == align_up(sizeof h), bytes.size(),
                     "truncated: a .haar header takes 128 bytes");
-    std::memcpy(&h, m_bytes.data(), sizeof h);
+    std::memcpy(&h, bytes.data(), sizeof h);
     m_rules.check_header(h, 0);
     for (std::size_t i = sizeof h; i < align_up(sizeof h); ++i)
-      m_rules.require(m_bytes[i] == std::byte{0}, i, "padding after the header is not 0");
-    if (h.file_bytes != m_bytes.size())
+      m_rules.require(bytes[i] == std::byte{0}, i, "padding after the header is not 0");
+    if (h.file_bytes != m_file.size())
       m_rules.refuse(16, "truncated or extended: the header says " + std::to_string(h.file_bytes) +
-                             " bytes, the file has " + std::to_string(m_bytes.size()));
+                             " bytes, the file has " + std::to_string(m_file.size()));
     return h;
   }
 
   std::vector<IndexEntry> index(const FileHeader& h) const {
     const std::uint64_t count = static_cast<std::uint64_t>(h.columns) * h.rows;
-    const auto bytes = section(h.index_offset, count * sizeof(IndexEntry), 64, "index");
+    check_section(h.index_offset, count * sizeof(IndexEntry), 64, "index");
+    const auto bytes = m_file.part(h.index_offset, count * sizeof(IndexEntry));
     m_rules.require(hash_bytes(bytes) == h.index_checksum, h.index_offset,
                     "index checksum does not fit the index");
     std::vector<IndexEntry> entries(count);
@@ -54,15 +56,17 @@ public:
   }
 
   std::string text(const FileHeader& h) const {
-    const auto bytes = section(h.text_offset, h.text_bytes, 80, "text");
+    check_section(h.text_offset, h.text_bytes, 80, "text");
+    const auto bytes = m_file.part(h.text_offset, h.text_bytes);
     m_rules.require(hash_bytes(bytes) == h.text_checksum, h.text_offset,
                     "text checksum does not fit the text");
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
 
-  /// A tree that may be looked at, but not walked before check_tree() has seen it.
+  /// A tree that check_tree() must read before it is used.
   TreeView tree(const FileHeader& h, const IndexEntry& entry) const {
-    const auto bytes = section(entry.offset, tree_bytes(h, entry), entry.offset, "tree");
+    check_section(entry.offset, tree_bytes(h, entry), entry.offset, "tree");
+    const std::byte* start = m_file.place(entry.offset);
     TreeView view;
     view.levels = static_cast<int>(h.levels);
     view.channels = static_cast<int>(h.channels);
@@ -70,7 +74,7 @@ public:
     view.node_count = entry.node_count;
     view.scale = entry.scale;
     view.mean = {entry.mean[0], entry.mean[1], entry.mean[2]};
-    view.links = reinterpret_cast<const std::uint32_t*>(bytes.data()) + h.levels + 1;
+    view.links = reinterpret_cast<const std::uint32_t*>(start) + h.levels + 1;
     view.coefficients = reinterpret_cast<const std::byte*>(view.links + entry.node_count);
     return view;
   }
@@ -81,14 +85,13 @@ private:
     return tree_size(entry.node_count, h.levels, h.channels, coefficient_bytes(type));
   }
 
-  std::span<const std::byte> section(std::uint64_t offset, std::uint64_t size, std::uint64_t field,
-                                     const char* name) const {
-    if (offset > m_bytes.size() || size > m_bytes.size() - offset)
+  void check_section(std::uint64_t offset, std::uint64_t size, std::uint64_t field,
+                     const char* name) const {
+    if (offset > m_file.size() || size > m_file.size() - offset)
       m_rules.refuse(field, std::string(name) + " reaches beyond the end of the file");
-    return m_bytes.subspan(offset, size);
   }
 
-  std::span<const std::byte> m_bytes;
+  const InputFile& m_file;
   FileRules m_rules;
 };
 
@@ -110,19 +113,24 @@ TreeSet::TreeSet(InputFile file, Check check) : m_file(std::move(file)) {
     m_checksums.push_back(entry.checksum);
   }
   m_checked = std::vector<Flag>(index.size());
-  if (check == Check::Everything)
-    parallel_ranges(index.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        check_tree(i);
-    });
+  if (check == Check::WhenUsed)
+    return;
+  m_file.bytes();
+  parallel_ranges(index.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      check_tree(i);
+  });
 }
 
 void TreeSet::check_tree(std::size_t i) const {
+  const std::lock_guard lock((*m_mutexes)[i % m_mutexes->size()]);
+  if (m_checked[i].set.load(std::memory_order_relaxed))
+    return; // another thread was first
   const TreeView& view = m_trees[i];
   const FileRules rules(path());
   const auto* start = reinterpret_cast<const std::byte*>(view.links - (m_levels + 1));
-  const auto offset = static_cast<std::uint64_t>(start - m_file.bytes().data());
-  const std::span<const std::byte> bytes(start, bytes_of(view));
+  const auto offset = static_cast<std::uint64_t>(start - m_file.place(0));
+  const std::span<const std::byte> bytes = m_file.part(offset, bytes_of(view));
   rules.require(hash_bytes(bytes) == m_checksums[i], offset, "tree checksum does not fit the tree");
   rules.check_links(view, offset);
   rules.check_coefficients(view, offset);
@@ -149,7 +157,8 @@ std::uint64_t TreeSet::tree_bytes(int column, int row) const {
 }
 
 bool begins_as_tree_set(const InputFile& file) {
-  return begins_mapped(file.bytes()) || begins_packed(file.bytes());
+  const auto bytes = file.beginning(sizeof file_magic);
+  return begins_mapped(bytes) || begins_packed(bytes);
 }
 
 } // namespace haarlight::wavelet

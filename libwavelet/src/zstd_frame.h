@@ -1,8 +1,9 @@
 #pragma once
-// One zstd frame: some bytes that say how many they become.
+// One Zstandard frame (RFC 8878) that states its content size.
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,10 @@ namespace haarlight::wavelet {
 /// @return bytes appended
 std::size_t append_frame(std::span<const std::byte> content, std::vector<std::byte>& bytes);
 
-/// True if `frame` is one whole frame that claims to hold `size` bytes.
-bool frame_claims(std::span<const std::byte> frame, std::uint64_t size);
+/// The content size that a frame states, if `frame` is exactly one frame whose blocks can hold that
+/// much. Reads the frame header and the block headers; decodes nothing. Nothing is returned for
+/// frames with a dictionary or with a reserved or unused bit set.
+std::optional<std::uint64_t> frame_content_size(std::span<const std::byte> frame);
 
 /// Fills `content`; false if the frame is broken or holds another number of bytes.
 bool read_frame(std::span<const std::byte> frame, std::span<std::byte> content);

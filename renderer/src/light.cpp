@@ -12,8 +12,11 @@ Light::Light(const LightDescription& description, probe::Lookup lookup) {
   place(description.rotate);
   if (!description.probe.empty()) {
     probe::LoadedProbe loaded =
-        probe::read_probe(description.probe, probe::parse_mapping(description.mapping), lookup);
+        probe::read_probe(description.probe, probe::parse_mapping(description.mapping), lookup,
+                          {.layer = description.layer, .part = description.part});
     m_note = loaded.mapping_reason;
+    for (const std::string& note : loaded.notes)
+      m_note += "; " + note;
     m_source = loaded.source;
     m_probe.emplace(std::move(loaded.probe));
   }
@@ -70,9 +73,9 @@ void Light::need_distribution() {
     m_distribution.emplace(*m_probe);
 }
 
-wavelet::Map Light::map(int most) const {
+wavelet::Map Light::map(int most, int least) const {
   if (m_probe) {
-    int size = 4;
+    int size = least;
     while (size < most && size < 2 * m_probe->height())
       size *= 2;
     return probe::world_map(*m_probe, size, probe::MapOptions{}.supersample);

@@ -71,6 +71,17 @@ Rgb LightSamples::weight(std::size_t i) const {
 bool LightSamples::visible(std::size_t i) const {
   if (!(m_directions[i].pdf > 0) || !(m_reflected[i] > 0).any())
     return false;
+  return trace(i);
+}
+
+std::optional<bool> LightSamples::unoccluded(std::size_t i) const {
+  const DirectionSample& s = m_directions[i];
+  if (!(s.pdf > 0) || !(m_point.n.dot(s.direction) > 0))
+    return std::nullopt;
+  return trace(i);
+}
+
+bool LightSamples::trace(std::size_t i) const {
   const Vec3 w = m_scene.light().to_world(m_directions[i].direction);
   return !m_scene.shapes().occluded(leave(m_seen->hit, w));
 }

@@ -32,9 +32,21 @@ public:
   /// Whether light reaches the point from sample i: traces its ray. False where weight() is 0.
   bool visible(std::size_t i) const;
 
+  /// Whether the direction of sample i is unoccluded, however little it reflects: traces its ray.
+  /// Nothing if it is no direction above the horizon.
+  std::optional<bool> unoccluded(std::size_t i) const;
+
   float pdf(std::size_t i) const { return m_directions[i].pdf; }
+  Technique technique(std::size_t i) const { return m_directions[i].technique; }
+
+  /// As Sampler's.
+  SumVariance shared_variance(std::span<const std::uint8_t> visible) const {
+    return m_sampler->shared_variance(visible);
+  }
 
 private:
+  bool trace(std::size_t i) const;
+
   const LoadedScene& m_scene;
   const RenderOptions& m_options;
   std::unique_ptr<Sampler> m_sampler;

@@ -29,15 +29,14 @@ std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
 }
 
 /// Second dimension of Sobol's sequence, bit-reversed: Pascal's triangle modulo 2 applied to the
-/// index.
+/// index. As a polynomial over GF(2) with the index's bits as coefficients it is p(1 + x), found by
+/// halves: with p = l + x^m h and m a power of two, p(1 + x) = l(1 + x) + (1 + x^m) h(1 + x).
 std::uint32_t sobol_second_reversed(std::uint32_t index) {
-  std::uint32_t result = 0;
-  for (std::uint32_t column = 1U; index != 0; index >>= 1U) {
-    if ((index & 1U) != 0)
-      result ^= column;
-    column ^= column << 1U;
-  }
-  return result;
+  index ^= index >> 16U;
+  index ^= (index >> 8U) & 0x00ff00ffU;
+  index ^= (index >> 4U) & 0x0f0f0f0fU;
+  index ^= (index >> 2U) & 0x33333333U;
+  return index ^ ((index >> 1U) & 0x55555555U);
 }
 
 float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8U) * 0x1p-24F; }
@@ -52,11 +51,13 @@ class PointSet {
 public:
   PointSet(Points kind, std::uint32_t key)
       : m_kind(kind), m_key(key), m_seed_x(hash_words(key, 0x1234567U)),
-        m_seed_y(hash_words(key, 0x7654321U)) {}
+        m_seed_y(hash_words(key, 0x7654321U)), m_seed_order(hash_words(key, 0x5f3759dU)) {}
 
   Vec2 point(std::uint32_t index) const {
     if (m_kind == Points::Random)
       return random_point(m_key, index);
+    // Nested: a permutation of whole aligned runs, within which runs half as long are permuted.
+    index = reverse_bits(scramble_reversed(reverse_bits(index), m_seed_order));
     // The first dimension is the reversed index, so the index is the first dimension reversed.
     return {to_unit(reverse_bits(scramble_reversed(index, m_seed_x))),
             to_unit(reverse_bits(scramble_reversed(sobol_second_reversed(index), m_seed_y)))};
@@ -67,6 +68,7 @@ private:
   std::uint32_t m_key;
   std::uint32_t m_seed_x;
   std::uint32_t m_seed_y;
+  std::uint32_t m_seed_order;
 };
 
 } // namespace
@@ -79,16 +81,6 @@ void fill_points(Points kind, std::uint32_t key, std::uint32_t first, std::span<
   const PointSet set(kind, key);
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = set.point(first + static_cast<std::uint32_t>(i));
-}
-
-void fill_shuffled_points(Points kind, std::uint32_t key, std::uint32_t first,
-                          std::span<Vec2> out) {
-  const PointSet set(kind, key);
-  const std::uint32_t order = hash_words(key, 0x5f3759dU);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::uint32_t index = first + static_cast<std::uint32_t>(i);
-    out[i] = set.point(reverse_bits(scramble_reversed(reverse_bits(index), order)));
-  }
 }
 
 } // namespace haarlight::renderer

@@ -18,7 +18,7 @@ class DirectShader : public PixelShader {
 public:
   DirectShader(const LoadedScene& scene, const RenderOptions& options,
                const RenderFactories& factories)
-      : m_light(scene, options, factories) {}
+      : m_estimator(options.estimator), m_light(scene, options, factories) {}
 
   void forget() override { m_light.forget(); }
 
@@ -27,12 +27,27 @@ public:
     if (const auto unshadowed = m_light.unshadowed())
       sums.product = *unshadowed;
     m_light.sample(pass);
-    for (std::size_t i = 0; i < pass.count; ++i)
-      sums.add(m_light.weight(i), m_light.visible(i), m_light.pdf(i));
+    m_visible.resize(pass.count);
+    for (std::size_t i = 0; i < pass.count; ++i) {
+      const bool visible =
+          m_estimator == Estimator::Bidirectional ? add_direction(i, sums) : m_light.visible(i);
+      m_visible[i] = visible ? 1 : 0;
+      sums.add(m_light.weight(i), visible, m_light.pdf(i), m_light.technique(i));
+    }
+    sums.add_shared(m_light.shared_variance(m_visible));
   }
 
 private:
+  bool add_direction(std::size_t i, PixelSums& sums) const {
+    const std::optional<bool> unoccluded = m_light.unoccluded(i);
+    if (unoccluded)
+      sums.add_direction(*unoccluded);
+    return unoccluded.value_or(false);
+  }
+
+  Estimator m_estimator;
   LightSamples m_light;
+  std::vector<std::uint8_t> m_visible; ///< of the pass's samples
 };
 
 SamplerOptions sampling_of(const RenderOptions& options) {

@@ -22,7 +22,8 @@ constexpr std::size_t scene_bytes_max = std::size_t{1} << 26;
 class Folder {
 public:
   explicit Folder(const std::string& scene_path)
-      : m_prefix(scene_path.substr(0, scene_path.size() - base_name(scene_path).size())) {}
+      : m_prefix(names_descriptor(scene_path) ? "./"
+                                              : scene_path.substr(0, scene_path.rfind('/') + 1)) {}
 
   /// The file a key names; empty if the key is not there.
   std::string file(const SceneNode& node, std::string_view key) const {
@@ -30,7 +31,8 @@ public:
     if (!name)
       return {};
     const std::string text = name->text();
-    return text.front() == '/' ? text : m_prefix + text;
+    const std::string path = text.front() == '/' ? text : m_prefix + text;
+    return path == "-" ? "./-" : path; // a scene names files only
   }
 
 private:
@@ -84,13 +86,19 @@ CameraDescription read_camera(const SceneNode& node) {
 }
 
 LightDescription read_light(const SceneNode& node, const Folder& folder) {
-  node.allow({"probe", "haar", "table", "mapping", "rotate", "background"});
+  node.allow({"probe", "layer", "part", "haar", "table", "mapping", "rotate", "background"});
   LightDescription light;
   light.probe = folder.file(node, "probe");
   light.haar = folder.file(node, "haar");
   light.table = folder.file(node, "table");
   if (light.probe.empty() && light.haar.empty() && light.table.empty())
     node.fail("needs at least one of the keys probe, haar, table");
+  for (const auto& [key, text] : {std::pair("layer", &light.layer), std::pair("part", &light.part)})
+    if (const auto choice = node.find(key)) {
+      if (light.probe.empty())
+        choice->fail("belongs to a \"probe\", which is missing");
+      *text = choice->text();
+    }
   if (const auto mapping = node.find("mapping"))
     light.mapping =
         mapping->choice("mapping", {"auto", "angular", "latlong", "mirrorball", "octahedral"});
@@ -172,7 +180,7 @@ std::vector<ObjectDescription> read_objects(const SceneNode& node,
 
 SceneDescription load_scene(const std::string& path) {
   const InputFile file(path);
-  if (file.bytes().size() > scene_bytes_max)
+  if (file.size() > scene_bytes_max)
     throw_input_error(path, "is larger than 64 MiB, which no scene is");
   const JsonValue value = parse_json(file.bytes(), path);
   const SceneNode root(value, "", path);

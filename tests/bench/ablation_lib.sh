@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2154 # the scripts set the variables named here
 # Shared by the ablation scripts, to be sourced: $bin, $data_brdf, $data_probe and $work must be set.
 # What it makes stays in $work and is not made again, so that a run can be taken up and renewed.
 

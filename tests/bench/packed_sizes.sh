@@ -5,7 +5,7 @@
 # same maps at the same bound of the relative L2 error; both hold it for every single map.
 set -euo pipefail
 bin=${BIN:-$(dirname "${BASH_SOURCE[0]}")/../../build/release/bin}
-tolerances=${TOLERANCES:-0.1 0.05 0.03 0.02 0.01}
+read -r -a tolerances <<<"${TOLERANCES:-0.1 0.05 0.03 0.02 0.01}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -23,15 +23,15 @@ table() {
   local title=$1 brdf tolerance line worst
   shift
   printf '\n%s: mapped / packed KB by bound of the relative L2 error\n\n|' "$title"
-  printf ' %s |' "BRDF" $tolerances "file / packed at 0.03" "L2 error at 0.03" "albedo error, worst map"
+  printf ' %s |' "BRDF" "${tolerances[@]}" "file / packed at 0.03" "L2 error at 0.03" "albedo error, worst map"
   printf '\n|---|'
-  printf '%s---|' $tolerances "" "" "" | sed 's/[0-9.]*---/---/g'
+  printf '%s---|' "${tolerances[@]}" "" "" "" | sed 's/[0-9.]*---/---/g'
   printf '\n'
   for brdf in "${files[@]}"; do
     "$bin/brdf2maps" "$brdf" -q --json "$@" -o "$work/maps.exr" >"$work/report"
     worst="$(field mean_error) $(field worst_error)"
     line="| $(basename "$brdf" .binary) |"
-    for tolerance in $tolerances; do
+    for tolerance in "${tolerances[@]}"; do
       line="$line $(size --tolerance "$tolerance") $(size --tolerance "$tolerance" --quantize --pack)"
       line=$(awk -v line="$line" 'BEGIN { n = split(line, w, " "); s = w[1]
         for (i = 2; i < n - 1; ++i) s = s " " w[i]

@@ -63,7 +63,7 @@ rm -r kept out2 first second
 
 # tables only where a sampler needs them; scenes, points, budgets, estimators
 expect 0 haarbench "${run[@]}" --samplers light --spp 4 --seconds 0.001,0.002 --points both -o plain
-ls plain/cache | grep -q table && fail "tables were made for nothing"
+[ -n "$(find plain/cache -name '*table*')" ] && fail "tables were made for nothing"
 [ "$(column points plain/results.csv | sort | uniq -c | awk '{ print $1 }' | sort -u)" = 3 ] || fail "not 3 rows by points"
 column budget_seconds plain/results.csv | grep -qx 0.002 || fail "--seconds is not the budget"
 expect 0 haarbench "${run[@]}" --scene sphere spheres scene.json --samplers product,mis --spp 4 \
@@ -108,6 +108,17 @@ expect 4 haarbench "${run[@]}" --samplers mis --spp 4 -o file
 expect 4 haarbench "${run[@]}" --samplers mis --spp 4 -o file/x
 mkdir -p taken/report.html
 expect 4 haarbench "${run[@]}" --samplers mis --spp 4 -o taken
+expect 4 haarbench "${run[@]}" --samplers mis --spp 4 -o new/../file
+[ ! -e new ] || fail "a folder that was made for nothing is left"
+too_long=$(printf '%0300d' 0)
+expect 4 haarbench "${run[@]}" --samplers mis --spp 4 -o "new/nested/$too_long"
+[ ! -e new ] || fail "nested folders that were made for nothing are left"
+mkdir old old/taken
+expect 4 haarbench "${run[@]}" --samplers mis --spp 4 -o "old/taken/new/$too_long"
+[ -d old/taken ] && [ ! -e old/taken/new ] || fail "a folder that was there is removed, or a new one left"
+rm -r old
+full_disk haarbench "${run[@]}" --samplers mis --spp 4 -o new/full
+[ ! -e new ] || fail "folders are left where nothing could be written"
 mkdir full
 full_disk haarbench "${run[@]}" --samplers mis --spp 4 -o full
 [ ! -e full/results.json ] || fail "half of the results are there"

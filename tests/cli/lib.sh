@@ -46,7 +46,7 @@ prints() { grep -qF -- "$1" "$log/out" || fail "stdout lacks '$1': $(head -c 500
 # leaves NAMES…: these are all files in the folder.
 leaves() {
   local found wanted
-  found=$(ls -A | sort | tr '\n' ' ')
+  found=$(find . -mindepth 1 -maxdepth 1 -printf '%P\n' | sort | tr '\n' ' ')
   wanted=$([ $# -eq 0 ] || printf '%s\n' "$@" | sort | tr '\n' ' ')
   [ "$found" = "$wanted" ] || fail "the folder holds '$found', not '$wanted'"
 }
@@ -87,6 +87,7 @@ refuses_bad_output() {
 }
 
 # full_disk TOOL ARGUMENTS…: files of a KiB at most can be written; exit code 4.
+# shellcheck disable=SC2030,SC2031 # the subshell counts for itself
 full_disk() { (
   ulimit -f 1
   failures=0
@@ -95,7 +96,7 @@ full_disk() { (
 ) || failures=$((failures + 1)); }
 
 # patch FILE OFFSET BYTES: writes printf-escaped bytes into a file.
-patch() { printf "$3" | dd of="$1" bs=1 seek="$2" conv=notrunc status=none; }
+patch() { printf '%b' "$3" | dd of="$1" bs=1 seek="$2" conv=notrunc status=none; }
 
 finish() {
   [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -1,4 +1,4 @@
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2154 # lib.sh sets bin and log
 # Shared by the tests of haarview; after lib.sh.
 
 [ -x "$bin/haarview" ] || { echo "skipped: haarview was not built"; exit 77; }

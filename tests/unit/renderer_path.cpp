@@ -292,8 +292,8 @@ TEST_CASE("directions to emitters have the density they claim, and weights add u
     const int n = 40000;
     std::vector<Vec2> points(n);
     std::vector<Vec2> choices(n);
-    fill_shuffled_points(Points::Sobol, 1, 0, points);
-    fill_shuffled_points(Points::Sobol, 2, 0, choices);
+    fill_points(Points::Sobol, 1, 0, points);
+    fill_points(Points::Sobol, 2, 0, choices);
     float most_off = 0;
     double claimed = 0;
     double seen = 0;

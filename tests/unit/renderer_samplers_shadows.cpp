@@ -1,27 +1,12 @@
 // Samplers that know what is in the light's way.
 
+#include "crowded_scene.h"
 #include "sampler_checks.h"
 
 using namespace haarlight;
 using namespace haarlight::renderer;
 
 namespace {
-
-/// A shaded sphere among a shape of every kind.
-SceneDescription crowded(const std::string& material) {
-  SceneDescription description = fixture().scene(material, "studio");
-  const auto add = [&](const Shape& shape) { description.objects.push_back({shape, {}, 0}); };
-  add(Plane{Vec3(1.6F, 0, 0), Vec3(-1, 0.3F, 0)});
-  add(Sphere{Vec3(0.3F, 1.9F, 0.5F), 0.5F});
-  add(Box{Vec3(-1, 1.4F, 0.8F), Vec3(1, 1.6F, 1.4F)});
-  add(Cylinder{Vec3(-0.6F, 0, -1), Vec3(-0.6F, 3, 0.5F), 0.1F});
-  add(Torus{Vec3(0, 1.6F, 0), Vec3(0.2F, 1, 0.1F), 0.5F, 0.1F});
-  return description;
-}
-
-bool visible(const LoadedScene& scene, const Hit& hit, const Vec3& w) {
-  return !scene.shapes().occluded(leave(hit, scene.light().to_world(w)));
-}
 
 /// First and second moment of the visible integrand over a sampler's density, by quadrature.
 struct Moments {

@@ -44,11 +44,14 @@ TEST_CASE("file names count from the scene's folder", "[scene]") {
 TEST_CASE("the light's and the camera's other keys", "[scene]") {
   const SceneDescription scene = load(replaced(
       replaced(plain_scene, R"("haar": "grace.haar")",
-               R"("table": "/t.haar", "mapping": "latlong", "rotate": -30, "background": false)"),
+               R"("table": "/t.haar", "mapping": "latlong", "rotate": -30, "background": false, )"
+               R"("layer": "beauty", "part": "1")"),
       R"("type": "perspective", "from": [0, 0.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 30)",
       R"("type": "orthographic", "from": [0, 0.5, 6], "to": [0, 0, 0], "height": 2.2)"));
   CHECK(scene.light.table == "/t.haar");
   CHECK(scene.light.mapping == "latlong");
+  CHECK(scene.light.layer == "beauty");
+  CHECK(scene.light.part == "1");
   CHECK(scene.light.rotate == -30);
   CHECK_FALSE(scene.light.background);
   CHECK(scene.camera.projection == Projection::Orthographic);

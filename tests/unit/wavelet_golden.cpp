@@ -64,6 +64,7 @@ struct Golden {
   const char* name;
   SetKind kind;
   CompressOptions options;
+  int packed_version = 2;
 };
 
 /// Every kind of tree and stream: halves and floats, colours and luminance, as bits and integers.
@@ -84,13 +85,26 @@ std::vector<Golden> golden_files() {
 
 std::string path_of(const Golden& golden) {
   return std::string(HAARLIGHT_SOURCE_DIR "/tests/golden/") + golden.name +
-         (golden.options.packed ? ".packed.haar" : ".haar");
+         (!golden.options.packed       ? ".haar"
+          : golden.packed_version == 1 ? ".packed.haar"
+                                       : ".packed2.haar");
+}
+
+/// With the packed files of version 1, which are read but no longer written.
+std::vector<Golden> readable_files() {
+  std::vector<Golden> all = golden_files();
+  for (Golden& golden : std::vector(all))
+    if (golden.options.packed) {
+      golden.packed_version = 1;
+      all.push_back(golden);
+    }
+  return all;
 }
 
 } // namespace
 
 TEST_CASE("golden files read to the values they were made of") {
-  for (const Golden& golden : golden_files()) {
+  for (const Golden& golden : readable_files()) {
     INFO(path_of(golden));
     const TreeSet set = open_tree_set(path_of(golden));
     const GoldenSource source(golden.kind);

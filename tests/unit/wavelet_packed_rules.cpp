@@ -8,6 +8,8 @@
 
 #include <zstd.h>
 
+#include <algorithm>
+#include <cstring>
 #include <functional>
 
 using namespace haarlight;
@@ -70,7 +72,10 @@ struct Parts {
 
   static void seal(std::string& bytes) {
     put(bytes, 32 + 112, checksum(bytes, 32, 112));
-    put(bytes, 152, checksum(bytes, 0, 152));
+    const std::size_t text = get<std::uint32_t>(bytes, 24);
+    const std::string covered =
+        bytes.substr(0, 152) + (bytes.size() < 160 ? "" : bytes.substr(160, text));
+    put(bytes, 152, checksum(covered, 0, covered.size()));
   }
 };
 
@@ -85,6 +90,30 @@ std::string packed_example(const TemporaryFolder& folder) {
   return read_bytes(path);
 }
 
+/// Opens a file of these bytes without writing it.
+TreeSet open_bytes(const std::string& bytes) {
+  return open_tree_set(InputFile("set.haar", bytes.size(), [&](std::span<std::byte> to) {
+    std::memcpy(to.data(), bytes.data(), to.size());
+  }));
+}
+
+/// One map whose values rise evenly from left to right.
+class RampSource : public MapSource {
+public:
+  explicit RampSource(int size) { m_info.size = size; }
+  const SetInfo& info() const override { return m_info; }
+  Map make(int /*column*/, int /*row*/) const override {
+    Map map(m_info.size);
+    for (int y = 0; y < map.size; ++y)
+      for (int x = 0; x < map.size; ++x)
+        map.set(x, y, Rgb::Constant(static_cast<float>(x)));
+    return map;
+  }
+
+private:
+  SetInfo m_info;
+};
+
 void check_refused(const TemporaryFolder& folder, const char* rule, const std::string& bytes) {
   write_bytes(folder.file("broken.haar"), bytes);
   INFO(rule);
@@ -98,7 +127,8 @@ TEST_CASE("every broken rule of the packed header is refused") {
   const std::string good = packed_example(folder);
   using Bytes = std::string;
   const std::vector<std::pair<const char*, std::function<void(Bytes&)>>> in_header = {
-      {"version", [](Bytes& b) { put(b, 8, 2U); }},
+      {"version 0", [](Bytes& b) { put(b, 8, 0U); }},
+      {"version 3", [](Bytes& b) { put(b, 8, 3U); }},
       {"header size", [](Bytes& b) { put(b, 12, 128U); }},
       {"file size", [](Bytes& b) { b += '\0'; }},
       {"truncation", [](Bytes& b) { b.resize(b.size() - 9); }},
@@ -223,18 +253,133 @@ TEST_CASE("a frame that claims more than the trees need is not unpacked") {
   }
 }
 
-TEST_CASE("any flipped byte of a packed file is noticed") {
+TEST_CASE("every flipped bit is noticed in both forms") {
   const TemporaryFolder folder;
   const std::string path = folder.file("set.haar");
   CompressOptions options = keep_all();
-  options.packed = true;
-  write_set(path, RandomSource(4, 1, 1), options);
-  const std::string good = read_bytes(path);
-  for (std::size_t i = 0; i < good.size(); ++i) {
-    std::string bytes = good;
-    bytes[i] = static_cast<char>(bytes[i] ^ 0x20);
-    write_bytes(path, bytes);
-    INFO("byte " << i);
-    CHECK_THROWS_AS(open_tree_set(path), Error);
+  for (const bool packed : {false, true}) {
+    options.packed = packed;
+    write_set(path, RandomSource(4, 1, 1), options);
+    const std::string good = read_bytes(path);
+    for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+      std::string bytes = good;
+      bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ (1 << bit % 8));
+      INFO((packed ? "packed" : "mapped") << ", bit " << bit);
+      CHECK_THROWS_AS(open_bytes(bytes), Error);
+    }
   }
+}
+
+TEST_CASE("reserved and unused bits of a frame are refused") {
+  const TemporaryFolder folder;
+  const Parts parts(packed_example(folder));
+  const std::string good = parts.assemble();
+  const std::size_t text_frame = 160;
+  REQUIRE_NOTHROW(open_bytes(good));
+  for (const int bit : {3, 4}) {
+    std::string bytes = good;
+    bytes[text_frame + 4] = static_cast<char>(bytes[text_frame + 4] | 1 << bit);
+    Parts::seal(bytes);
+    CHECK_THROWS_AS(open_bytes(bytes), Error);
+  }
+}
+
+namespace {
+
+/// A full tree of a given depth. @param structure of every node above the last level
+Parts full_tree(Parts parts, std::uint32_t levels, char inner, char last, std::size_t values) {
+  std::uint32_t nodes = 0;
+  for (std::uint32_t l = 0; l < levels; ++l)
+    nodes += 1U << 2 * l;
+  const std::uint32_t last_nodes = 1U << 2 * (levels - 1);
+  parts.trees = 1;
+  put(parts.header, 32 + 32, levels);
+  put(parts.header, 32 + 48, 1U);
+  const std::uint64_t index = 128 + (4 * (levels + 1) + 22ULL * nodes + 8 + 15) / 16 * 16;
+  put(parts.header, 32 + 64, index);
+  put(parts.header, 32 + 80, index + 40);
+  put(parts.header, 32 + 16, index + 40 + get<std::uint64_t>(parts.header, 32 + 88));
+  std::string record(20, '\0');
+  put(record, 0, nodes);
+  put(record, 4, 1.0F);
+  parts.streams[0] = record;
+  parts.streams[1] = std::string(levels, '\0');
+  parts.streams[2] = std::string(nodes - last_nodes, inner) + std::string(last_nodes, last);
+  for (std::size_t k = 3; k < parts.streams.size(); ++k)
+    parts.streams[k] = std::string(values, k == 3 ? '\2' : '\0');
+  return parts;
+}
+
+std::string refusal(const std::string& bytes) {
+  try {
+    open_bytes(bytes);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST_CASE("trees of nodes without coefficients are refused before they are made") {
+  const TemporaryFolder folder;
+  const Parts example(packed_example(folder));
+  const auto message = [&](std::uint32_t levels, char inner, char last, std::size_t values) {
+    return refusal(full_tree(example, levels, inner, last, values).assemble());
+  };
+  const std::string empty = "no coefficient in their subtree";
+  CHECK(message(13, 15, 0, 0).find(empty) != std::string::npos);
+  CHECK(message(11, 15, 0, 0).find(empty) != std::string::npos);
+  // Enough coefficients for the count of nodes, but all of them at the top.
+  CHECK(message(11, '\x7f', 0, 3 * 349525).find(empty) != std::string::npos);
+  // As many bytes, but in trees whose coefficients are there: refused for their checksums only.
+  CHECK(message(10, '\x7f', '\x70', 3 * 349525).find("checksums") != std::string::npos);
+  CHECK(message(9, 15, 0, 0).find("checksums") != std::string::npos);
+}
+
+TEST_CASE("frames whose blocks cannot hold their content size are refused") {
+  const TemporaryFolder folder;
+  const Parts parts(packed_example(folder));
+  Parts bomb = full_tree(parts, 13, 15, 0, 0);
+  std::string bytes = bomb.assemble();
+  // The structure's frame is cut down to one block, which holds 128 KiB at most.
+  const std::size_t block = 160 + get<std::uint32_t>(bytes, 24);
+  std::size_t frame = block + 16 + 4 * 9;
+  for (std::size_t i = 0; i < 2; ++i)
+    frame += get<std::uint32_t>(bytes, block + 16 + 4 * i);
+  const std::uint32_t size = get<std::uint32_t>(bytes, block + 16 + 8);
+  std::string cut = bytes.substr(frame, 4) + '\xa0'; // one segment, four bytes of content size
+  cut += std::string(4, '\0');
+  put(cut, 5, 22369621U);
+  cut += std::string("\x03\x00\x10\x0f", 4); // last block, a run of 128 KiB
+  bytes.replace(frame, size, cut);
+  put(bytes, block + 16 + 8, static_cast<std::uint32_t>(cut.size()));
+  put(bytes, block + 4, static_cast<std::uint32_t>(bytes.size() - block));
+  put(bytes, block + 8, checksum(bytes, block + 16, bytes.size() - block - 16));
+  put(bytes, 16, static_cast<std::uint64_t>(bytes.size()));
+  Parts::seal(bytes);
+  CHECK(refusal(bytes).find("does not hold as many bytes") != std::string::npos);
+}
+
+TEST_CASE("a set of ramps, which compresses a thousandfold, comes back") {
+  const TemporaryFolder folder;
+  CompressOptions options = keep_all();
+  write_set(folder.file("mapped.haar"), RampSource(512), options);
+  options.packed = true;
+  write_set(folder.file("packed.haar"), RampSource(512), options);
+  const std::string mapped = read_bytes(folder.file("mapped.haar"));
+  CHECK(read_bytes(folder.file("packed.haar")).size() < mapped.size() / 500);
+  const TreeSet set = open_tree_set(folder.file("packed.haar"));
+  CHECK(
+      std::equal(mapped.begin(), mapped.end(), reinterpret_cast<const char*>(set.bytes().data())));
+}
+
+TEST_CASE("differences that halves round to zero make no nodes") {
+  Map map(64);
+  for (std::size_t i = 0; i < map.rgb.size(); ++i)
+    map.rgb[i] = 1 + static_cast<float>(i % 7);
+  map.rgb[0] = map.rgb[1] = map.rgb[2] = 1e20F;
+  CompressReport report;
+  const Tree tree = compress_map(map, keep_all(), report);
+  CHECK(tree.links.size() == 6); // the squares that hold the bright pixel
 }

@@ -279,3 +279,29 @@ TEST_CASE("what is no .haar file is refused with the right kind of error") {
       CHECK(std::string(error.what()).find(folder.file(name)) == 0);
     }
 }
+
+TEST_CASE("what happens to a file after it was opened changes no tree") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("set.haar");
+  write_set(path, RandomSource(16, 2, 1), keep_all());
+  const std::string good = read_bytes(path);
+  const TreeSet set(path);
+  const Map expected = set.tree(1, 0).reconstruct(4);
+  for (const std::string& bytes : {std::string(), std::string(good.size(), '\xff')}) {
+    write_bytes(path, bytes); // truncates and writes in place
+    CHECK(set.tree(1, 0).reconstruct(4).rgb == expected.rgb);
+  }
+}
+
+TEST_CASE("a file that changes before its trees are read is refused") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("set.haar");
+  write_set(path, RandomSource(16, 2, 1), keep_all());
+  const std::string good = read_bytes(path);
+  for (const std::string& bytes : {good.substr(0, 200), std::string(good.size(), '\xff')}) {
+    write_bytes(path, good);
+    const TreeSet set(path, Check::WhenUsed);
+    write_bytes(path, bytes);
+    CHECK_THROWS_AS(set.tree(0, 0), Error);
+  }
+}

@@ -16,9 +16,10 @@ void declare_measurement(tool::Tool& app, Plan& plan) {
   app.text_list(plan.seconds_words, "--seconds", "NUM,...",
                 "CPU seconds per film of the comparison at equal time [what the base sampler, "
                 "product or else the first, takes for each --spp]");
-  app.text_list(plan.scenes, "--scene", "sphere|spheres|FILE.json",
-                "Unoccluded sphere; three spheres on a plane, all of the BRDF; or a scene whose "
-                "light and first material are replaced [sphere]");
+  app.optional_inputs(
+      plan.scenes, "--scene", "sphere|spheres|FILE.json",
+      "Unoccluded sphere; three spheres on a plane, all of the BRDF; or a scene whose "
+      "light and first material are replaced [sphere]");
   app.text(plan.size, "--size", "WxH", "Size of the film in pixels");
   app.value(plan.seeds, "--seeds", "Runs that differ in their seed, for each figure", 2, 1000);
   app.value(plan.seed, "--seed", "First seed, below 2^30");
@@ -55,10 +56,11 @@ void declare_cache(tool::Tool& app, CacheOptions& cache) {
 } // namespace
 
 void declare(tool::Tool& app, Plan& plan) {
-  app.text_list(plan.brdfs, "--brdf", "X.binary", "MERL files, one or more");
-  app.text_list(plan.probes, "--probe", "Y", "Light probes, one or more");
+  app.optional_inputs(plan.brdfs, "--brdf", "X.binary", "MERL files, one or more");
+  app.optional_inputs(plan.probes, "--probe", "Y", "Light probes, one or more");
   app.output(plan.folder, "DIR",
-             "Folder for results.json, results.csv, report.html and cache/; made if need be");
+             "Folder for results.json, results.csv, report.html and cache/; made if need be",
+             tool::Stream::No);
   declare_measurement(app, plan);
   declare_cache(app, plan.cache);
   app.offer_json();

@@ -1,12 +1,16 @@
 #include <image/exr_stream.h>
 
+#include <wavelet/parallel.h>
+
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfTestFile.h>
+#include <OpenEXR/ImfThreading.h>
 
 #include <Iex.h>
 
 #include <algorithm>
 #include <cstring>
+#include <system_error>
 
 namespace haarlight::image {
 
@@ -27,6 +31,16 @@ void ExrOutputStream::write(const char bytes[], int count) {
 void ExrOutputStream::rethrow() const {
   if (m_error)
     throw Error(*m_error);
+}
+
+int start_exr_threads() {
+  try {
+    Imf::setGlobalThreadCount(thread_count());
+    return thread_count();
+  } catch (const std::system_error&) {
+    Imf::setGlobalThreadCount(0);
+    return 0;
+  }
 }
 
 ExrInputStream::ExrInputStream(const InputFile& file)

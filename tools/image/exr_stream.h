@@ -36,8 +36,12 @@ private:
   std::uint64_t m_size = 0;
 };
 
-/// Reads from mapped bytes, which must outlive it. OpenEXR gets copies: in a memory-mapped stream
-/// it reads past the end of chunks that are shorter than their pixels.
+/// Gives OpenEXR as many threads as parallel_for uses, or none where the system refuses them.
+/// @return their number
+int start_exr_threads();
+
+/// Reads from the bytes of a file, which must outlive it. OpenEXR gets copies: in a memory-mapped
+/// stream it reads past the end of chunks that are shorter than their pixels.
 class ExrInputStream : public Imf::IStream {
 public:
   explicit ExrInputStream(const InputFile& file);

@@ -5,15 +5,12 @@
 #include <image/exr_stream.h>
 #include <image/map_set_exr.h>
 
-#include <wavelet/parallel.h>
-
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <OpenEXR/ImfThreading.h>
 
 #include <cassert>
 
@@ -55,11 +52,11 @@ Imf::FrameBuffer frame_of(const ExrImage& image) {
 
 void write_exr(const std::string& path, const ExrImage& image) {
   assert(image.width > 0 && image.height > 0 && !image.channels.empty());
-  Imf::setGlobalThreadCount(thread_count());
+  const int threads = start_exr_threads();
   OutputFile file(path);
   ExrOutputStream stream(file);
   {
-    Imf::OutputFile output(stream, header_of(image), thread_count());
+    Imf::OutputFile output(stream, header_of(image), threads);
     output.setFrameBuffer(frame_of(image));
     output.writePixels(image.height);
   }

@@ -4,11 +4,11 @@
 #include <image/map_set_attributes.h>
 
 #include <wavelet/error.h>
+#include <wavelet/out_of_memory.h>
 #include <wavelet/parallel.h>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 
 #include <algorithm>
@@ -89,11 +89,17 @@ void write_tiles(const MapSource& source, Imf::TiledOutputFile& image,
                  const wavelet::Progress& progress) {
   const SetInfo& info = source.info();
   const int most = batch_size(info);
-  Batch batch(info, most);
+  const std::string purpose = std::to_string(most) + " maps of " + std::to_string(info.size) +
+                              " x " + std::to_string(info.size) + " pixels";
+  const std::uint64_t bytes = 12 * static_cast<std::uint64_t>(most) *
+                              static_cast<std::uint64_t>(info.size) *
+                              static_cast<std::uint64_t>(info.size);
+  Batch batch = with_memory_for(purpose, bytes, [&] { return Batch(info, most); });
   for (int row = 0; row < info.rows; ++row)
     for (int column = 0; column < info.columns; column += most) {
       const int count = std::min(most, info.columns - column);
-      make_batch(source, column, row, count, batch, meter);
+      with_memory_for(purpose, bytes,
+                      [&] { make_batch(source, column, row, count, batch, meter); });
       image.setFrameBuffer(batch.frame(column, row));
       image.writeTiles(column, column + count - 1, row, row);
       stream.rethrow();
@@ -110,10 +116,10 @@ MapSetResult write_map_set_exr(const MapSource& source, OutputFile& file,
   if (std::max(info.columns, info.rows) > (1 << 29) / info.size)
     throw_output_error(file.path(), "would be wider than an EXR can be; write a .haar instead");
   wavelet::ConservationMeter meter(info);
-  Imf::setGlobalThreadCount(thread_count());
+  const int threads = start_exr_threads();
   ExrOutputStream stream(file);
   {
-    Imf::TiledOutputFile image(stream, header_of(info), thread_count());
+    Imf::TiledOutputFile image(stream, header_of(info), threads);
     write_tiles(source, image, stream, meter, progress);
   }
   stream.rethrow();

@@ -31,7 +31,7 @@ void declare(Tool& app, Options& options) {
              "Where to from the place in the scene, x, y, z in world units: the object of --vary "
              "object, or the eye of --vary view",
              3, -1e6, 1e6);
-  app.text(options.png, "--png", "OUT.png", "Write a tone-mapped preview too");
+  app.optional_output(options.png, "--png", "OUT.png", "Write a tone-mapped preview too");
   app.value(options.exposure, "--exposure", "Stops that the preview is brightened by", -30, 30);
   app.offer_json();
 }

@@ -1,6 +1,7 @@
 // haarrelight build: the transfer of every pixel, as trees.
 #include <relight/commands.h>
 #include <render/film_output.h>
+#include <support/output_size.h>
 #include <support/progress.h>
 
 #include <renderer/scene_file.h>
@@ -24,6 +25,7 @@ struct Options {
   int resolution = 128;
   std::optional<double> tolerance;
   bool pack = false;
+  bool force = false;
   wavelet::ProjectionOptions projection;
 };
 
@@ -44,6 +46,7 @@ void declare(Tool& app, Options& options) {
             0.0001, 100);
   app.flag(options.pack, "--pack",
            "Write the packed form: several times smaller, slower to write and to open");
+  add_force(app, options.force);
   app.offer_json();
 }
 
@@ -97,10 +100,12 @@ int build(const Tool& app, Options& options) {
     set_film_size(options.size, scene);
   if (scene.width > 65536 || scene.height > 65536)
     throw UsageError("--size: a transfer has at most 65536 pixels along a side");
+  check_sources(app, scene);
   const Variation variation = variation_of(scene, options.vary);
   options.projection.tolerance =
       options.tolerance.value_or(default_transfer_tolerance(variation.varying));
   OutputFile file(options.output);
+  require_room(options.output, transfer_size(scene.width, scene.height), options.force);
   const LoadedScene loaded(scene, SourceLookups(), SamplerKind::Product, false);
   const auto start = std::chrono::steady_clock::now();
   const auto sink = make_sink(file, info_of(scene, variation, options), options);

@@ -1,5 +1,6 @@
 #include <relight/session.h>
 
+#include <render/film_output.h>
 #include <support/words.h>
 
 #include <image/image_exr.h>
@@ -71,15 +72,16 @@ std::string list_text(double x, double y, double z) {
 
 void declare_change(Tool& app, ChangeOptions& options) {
   app.input(options.transfer, "T.haar", "Transfer that haarrelight build made");
-  app.text(options.scene, "--scene", "SCENE.json",
-           "The scene it was made of [the file of that name beside T.haar]");
-  app.text(
+  app.optional_input(options.scene, "--scene", "SCENE.json",
+                     "The scene it was made of [the file of that name beside T.haar]");
+  app.optional_input(
       options.light, "--light", "PROBE",
       "Another light for --vary light: any probe image, or a .haar of one world-frame map [the "
       "scene's]");
-  app.text(options.brdf, "--brdf", "BRDF",
-           "Another reflectance for --vary material: a MERL file, or a .haar of its θ_r-only set "
-           "[the scene's]");
+  app.optional_input(
+      options.brdf, "--brdf", "BRDF",
+      "Another reflectance for --vary material: a MERL file, or a .haar of its θ_r-only set "
+      "[the scene's]");
 }
 
 RelightInput::RelightInput(const Tool& app, const ChangeOptions& options)
@@ -87,6 +89,8 @@ RelightInput::RelightInput(const Tool& app, const ChangeOptions& options)
       m_variation(m_transfer.variation(m_scene)) {
   check_fit(app, m_transfer, m_variation.varying);
   replace_sources(options, m_variation, m_scene);
+  app.reads("the scene", m_scene.path);
+  check_sources(app, m_scene);
 }
 
 void write_relit_exr(const std::string& path, const Film& film, const Transfer& transfer,

@@ -31,7 +31,8 @@ struct Options {
 void declare(Tool& app, Options& options) {
   declare_change(app, options.change);
   app.output(options.output, "OUT.png",
-             "Contact sheet to write; the pictures go beside it, as OUT-0000.png and on");
+             "Contact sheet to write; the pictures go beside it, as OUT-0000.png and on",
+             Stream::No);
   app.value(options.frames, "--frames", "Number of pictures", 1, 10000);
   app.value(options.thumbnails, "--on-sheet", "Pictures on the contact sheet at most", 1, 400);
   app.values(options.rotate_from, "--rotate-from",
@@ -82,6 +83,8 @@ image::Picture picture_of(const Film& film, const Options& options) {
 int sweep(const Tool& app, Options& options) {
   if (!has_extension(options.output, ".png"))
     throw UsageError("--output: " + options.output + " does not end in .png");
+  for (int frame = 0; frame < options.frames; ++frame)
+    app.writes("a picture", frame_path(options.output, frame));
   RelightSession session(app, options.change);
   std::vector<image::SheetEntry> entries;
   double seconds = 0;

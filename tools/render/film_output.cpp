@@ -70,6 +70,11 @@ void set_sources(const SceneDescription& scene, Provenance& provenance) {
     provenance.set("source " + std::to_string(++number), base_name(file) + " " + file_hash(file));
 }
 
+void check_sources(const Tool& tool, const SceneDescription& scene) {
+  for (const std::string& file : sources_of(scene))
+    tool.reads("a source of the scene", file);
+}
+
 void write_film_exr(const std::string& path, const RenderResult& result,
                     const SceneDescription& scene, const RenderOptions& options,
                     const std::vector<std::pair<std::string, std::string>>& integrator) {

@@ -2,7 +2,7 @@
 // What haarrender says and writes of a rendering.
 
 #include <renderer/render.h>
-#include <support/report.h>
+#include <support/tool.h>
 #include <wavelet/provenance.h>
 
 #include <string>
@@ -13,6 +13,9 @@ namespace haarlight::tool {
 
 /// Adds every file that a scene names, with its hash. @throws Error(Input)
 void set_sources(const renderer::SceneDescription& scene, Provenance& provenance);
+
+/// @throws UsageError if an output of the tool is a file that the scene names
+void check_sources(const Tool& tool, const renderer::SceneDescription& scene);
 
 /// Writes the film as EXR: R, G, B, the normal N.X N.Y N.Z, pdf_sum, variance, samples; the
 /// attribute haarlight:provenance names scene, sources (each with its hash) and options,

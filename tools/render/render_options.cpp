@@ -31,10 +31,11 @@ void declare_sampling(Tool& app, RenderOptions& render) {
             "within 0.002 to 0.1, thrice that where there may be shadows (product-visibility: six "
             "times), and 0.001 for bidirectional and ratio",
             0, 100);
-  app.value(render.sampling.product.max_leaves, "--product-leaves",
-            "Leaves of a product at most; product-visibility takes 25 for each sample at most "
-            "where there may be shadows",
-            64, 1 << 20);
+  app.value(
+      render.sampling.product.max_leaves, "--product-leaves",
+      "Leaves of a product at most; product-visibility takes 25 for each sample at most, or 400 "
+      "where there may be shadows",
+      64, 1 << 20);
   app.value(render.sampling.product.drift_bound, "--product-drift",
             "Relative variance per sample that a pixel may add by using its neighbour's product; "
             "0 = each its own",

@@ -28,7 +28,8 @@ struct OpenSet {
 };
 
 bool begins_as_exr(const InputFile& file) {
-  return file.bytes().size() >= 4 && std::memcmp(file.bytes().data(), "\x76\x2f\x31\x01", 4) == 0;
+  const auto bytes = file.beginning(4);
+  return bytes.size() == 4 && std::memcmp(bytes.data(), "\x76\x2f\x31\x01", 4) == 0;
 }
 
 OpenSet open_set(const std::string& path) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 namespace haarlight::tool {
 namespace {
@@ -99,7 +98,7 @@ Report describe_header(const TreeSet& set, wavelet::FileForm form) {
   Report report;
   report.add("file", set.path())
       .add("form", form_name(form))
-      .add("bytes", static_cast<std::uint64_t>(std::filesystem::file_size(set.path())));
+      .add("bytes", static_cast<std::uint64_t>(InputFile(set.path()).size()));
   if (form == wavelet::FileForm::Packed)
     report.add("unpacked_bytes", set.file_bytes());
   report.add("kind", kind_name(info.kind))

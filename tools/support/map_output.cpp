@@ -1,6 +1,7 @@
 #include <support/map_output.h>
 
 #include <support/map_report.h>
+#include <support/output_size.h>
 #include <support/progress.h>
 #include <support/words.h>
 
@@ -42,6 +43,7 @@ int write_exr_set(const Tool& tool, const wavelet::MapSource& source, const MapO
                   Report& report) {
   refuse_compress_options(tool);
   OutputFile file(output.path);
+  require_room(output.path, exr_set_size(source.info()), output.force);
   image::MapSetResult result;
   {
     ProgressBar bar(tool, "making maps");
@@ -51,10 +53,16 @@ int write_exr_set(const Tool& tool, const wavelet::MapSource& source, const MapO
   return finish(tool, output, result.conservation, commit, result.bytes, report);
 }
 
+/// Of a link and the coefficients of a node.
+std::uint64_t node_bytes(const CompressOptions& options) {
+  return 4 + (options.luminance ? 3 : 9) * wavelet::coefficient_bytes(options.coefficients);
+}
+
 int write_haar_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
                    Report& report) {
   const CompressOptions options = compress_options(output, source.info());
   OutputFile file(output.path);
+  require_room(output.path, haar_set_size(source.info(), node_bytes(options)), output.force);
   CompressReport result;
   {
     ProgressBar bar(tool, "compressing maps");
@@ -68,9 +76,11 @@ int write_haar_set(const Tool& tool, const wavelet::MapSource& source, const Map
 } // namespace
 
 void add_map_output(Tool& tool, MapOutput& output) {
-  tool.output(output.path, "OUT.exr|OUT.haar",
-              "Map set to write: one tiled EXR, or compressed to a .haar file");
+  tool.output(
+      output.path, "OUT.exr|OUT.haar",
+      "Map set to write: one tiled EXR, or compressed to a .haar file (a pipe takes the EXR)");
   add_compress_options(tool, output);
+  add_force(tool, output.force);
   tool.value(output.conservation_tolerance, "--conservation-tolerance",
              "Largest relative error of the set's total integral; past it the exit code is 1", 0,
              1e9);
@@ -80,9 +90,10 @@ void add_map_output(Tool& tool, MapOutput& output) {
 int write_map_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
                   Report report) {
   describe_set(source.info(), report);
-  if (has_extension(output.path, ".haar"))
+  const bool stream = output.path == standard_output;
+  if (stream ? output.stream_trees : has_extension(output.path, ".haar"))
     return write_haar_set(tool, source, output, report);
-  if (has_extension(output.path, ".exr"))
+  if (stream || has_extension(output.path, ".exr"))
     return write_exr_set(tool, source, output, report);
   throw UsageError("--output: '" + output.path + "' ends in neither .exr nor .haar");
 }

@@ -14,10 +14,12 @@ namespace haarlight::tool {
 /// Where maps go. Declare one, pass it to add_map_output() before and to write_map_set() inside
 /// Tool::run().
 struct MapOutput {
-  std::string path; ///< *.exr or *.haar
+  std::string path;          ///< *.exr or *.haar
+  bool stream_trees = false; ///< standard output gets a .haar file, not an EXR
   wavelet::CompressOptions compression;
   std::optional<double> tolerance;      ///< of thresholding, if given on the command line
   std::optional<int> keep;              ///< likewise
+  bool force = false;                   ///< start even if the output is estimated not to fit
   double conservation_tolerance = 0.01; ///< largest relative error of the set's total luminance
 };
 

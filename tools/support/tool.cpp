@@ -1,5 +1,6 @@
 #include <support/tool.h>
 
+#include <wavelet/output_file.h>
 #include <wavelet/provenance.h>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +19,9 @@ std::string version_line(const std::string& name) {
   std::string version = version_text(); // "haarlight 0.1.0"
   return name + " (" + version.insert(version.find(' '), ")");
 }
+
+/// Of names as in "-o,--output".
+std::string long_name(const std::string& names) { return names.substr(names.find("--")); }
 
 /// A path that is needed: CLI11 itself would let an empty one pass.
 void set_path(std::string& path, const std::string& word) {
@@ -47,17 +51,67 @@ void Tool::input(std::string& path, const std::string& placeholder, const std::s
           placeholder, [&path](const std::string& word) { set_path(path, word); }, help)
       ->type_name("")
       ->required();
+  m_file_checks.emplace_back([this, &path, placeholder] { reads(placeholder, path); });
 }
 
 void Tool::inputs(std::vector<std::string>& paths, const std::string& placeholder,
                   const std::string& help) {
   m_parser->app.add_option(placeholder, paths, help)->type_name("")->required();
+  m_file_checks.emplace_back([this, &paths, placeholder] {
+    for (const std::string& path : paths)
+      reads(placeholder, path);
+  });
 }
 
-void Tool::output(std::string& path, const std::string& placeholder, const std::string& help) {
-  add_option("-o,--output", placeholder, "", help,
-             [&path](const std::string& word) { set_path(path, word); });
+void Tool::output(std::string& path, const std::string& placeholder, const std::string& help,
+                  Stream stream) {
+  optional_output(path, "-o,--output", placeholder, help, stream);
   require("--output");
+}
+
+void Tool::optional_output(std::string& path, const std::string& names,
+                           const std::string& placeholder, const std::string& help, Stream stream) {
+  const std::string name = long_name(names);
+  const std::string shown = stream == Stream::Yes ? help + "; - is standard output" : help;
+  add_option(names, placeholder, "", shown,
+             [&path](const std::string& word) { set_path(path, word); });
+  m_file_checks.emplace_back([this, &path, name, stream] {
+    if (path == standard_output && stream == Stream::No)
+      throw UsageError(name + ": cannot be standard output; for a file of this name write ./-");
+    if (!path.empty())
+      writes(name, path);
+  });
+  m_parser->app.footer(
+      "Outputs appear whole or not at all. A symbolic link is written through: the "
+      "file that it leads to is replaced.");
+}
+
+void Tool::optional_input(std::string& path, const std::string& names,
+                          const std::string& placeholder, const std::string& help) {
+  text(path, names, placeholder, help);
+  m_file_checks.emplace_back([this, &path, name = long_name(names)] { reads(name, path); });
+}
+
+void Tool::optional_inputs(std::vector<std::string>& paths, const std::string& names,
+                           const std::string& placeholder, const std::string& help) {
+  text_list(paths, names, placeholder, help);
+  m_file_checks.emplace_back([this, &paths, name = long_name(names)] {
+    for (const std::string& path : paths)
+      reads(name, path);
+  });
+}
+
+void Tool::reads(const std::string& role, const std::string& path) const {
+  m_files.add_input(role, path);
+}
+
+void Tool::writes(const std::string& role, const std::string& path) const {
+  m_files.add_output(role, path);
+}
+
+void Tool::check_files() const {
+  for (const auto& check : m_file_checks)
+    check();
 }
 
 void Tool::texts(std::vector<std::string>& texts, const std::string& names,
@@ -80,7 +134,7 @@ void Tool::add_option(const std::string& names, const std::string& placeholder,
     try {
       setter(word);
     } catch (const UsageError& error) {
-      throw CLI::ValidationError(names.substr(names.find("--")), error.what());
+      throw CLI::ValidationError(long_name(names), error.what());
     }
   };
   const std::string shown = shown_default.empty() ? help : help + " [" + shown_default + "]";

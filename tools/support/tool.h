@@ -10,6 +10,7 @@
 //
 // An option's value at declaration is its default, shown by --help. Help texts name the unit.
 
+#include <support/file_roles.h>
 #include <support/report.h>
 
 #include <cstdint>
@@ -36,6 +37,9 @@ public:
   using std::runtime_error::runtime_error;
 };
 
+/// Whether an output may be standard output.
+enum class Stream { No, Yes };
+
 class Tool {
 public:
   /// @param name of the program, and behind a blank that of its command if it has several
@@ -44,13 +48,28 @@ public:
   Tool(const Tool&) = delete;
   Tool& operator=(const Tool&) = delete;
 
-  /// A required positional argument: a path.
+  // Files that are declared here are checked before the body is called: an output that is also an
+  // input or another output is a usage error. Options with other texts that name files add theirs
+  // by reads() and writes().
+
+  /// A required positional argument: a path, "-" for standard input.
   void input(std::string& path, const std::string& placeholder, const std::string& help);
   /// One or more positional paths.
   void inputs(std::vector<std::string>& paths, const std::string& placeholder,
               const std::string& help);
-  /// The required option -o, --output.
-  void output(std::string& path, const std::string& placeholder, const std::string& help);
+  /// The required option -o, --output. With Stream::Yes "-" is standard output; results then go to
+  /// stderr.
+  void output(std::string& path, const std::string& placeholder, const std::string& help,
+              Stream stream = Stream::Yes);
+  /// The same by an option that may be left out; the path is then empty.
+  void optional_output(std::string& path, const std::string& names, const std::string& placeholder,
+                       const std::string& help, Stream stream = Stream::Yes);
+  /// A further path that is read, if it is given.
+  void optional_input(std::string& path, const std::string& names, const std::string& placeholder,
+                      const std::string& help);
+  /// One or more such paths, any number of times.
+  void optional_inputs(std::vector<std::string>& paths, const std::string& names,
+                       const std::string& placeholder, const std::string& help);
 
   /// `names` is as in "-s,--size". Numbers outside [low, high], and anything that is no number, are
   /// usage errors.
@@ -69,7 +88,7 @@ public:
   /// nothing.
   void values(std::vector<double>& numbers, const std::string& names, const std::string& help,
               std::size_t count, double low, double high);
-  /// Any text, for example a further path; `placeholder` is what --help shows for it.
+  /// Any text; `placeholder` is what --help shows for it.
   void text(std::string& text, const std::string& names, const std::string& placeholder,
             const std::string& help);
   /// Any text, given any number of times.
@@ -103,6 +122,13 @@ public:
   /// exit codes and one line on stderr. Call once.
   int run(int argc, const char* const* argv, const std::function<int()>& body);
 
+  /// Files that the body learns of, for example from a scene: before they are opened.
+  /// @param role for messages, as in "the scene's probe". @throws UsageError if one is an output,
+  /// or
+  ///             for writes() any file of this run
+  void reads(const std::string& role, const std::string& path) const;
+  void writes(const std::string& role, const std::string& path) const;
+
   // What a body may ask and say.
   bool
   given(const std::string& name) const; ///< the option, as in "--size", was on the command line
@@ -118,9 +144,10 @@ public:
   void note(const std::string& line) const;
   /// A diagnostic line on stderr with --verbose only.
   void detail(const std::string& line) const;
-  /// A result on stdout, as text or with --json as an object. @throws Error(Output)
+  /// A result on stdout, as text or with --json as an object; on stderr, and not at all with
+  /// --quiet, if stdout takes an output. @throws Error(Output)
   void print(const Report& report) const;
-  /// Raw text on stdout. @throws Error(Output), for example for a closed pipe
+  /// Raw text likewise. @throws Error(Output), for example for a closed pipe
   void print(const std::string& text) const;
 
 private:
@@ -132,6 +159,7 @@ private:
   void add_choice(const std::string& names, const std::vector<std::string>& words,
                   const std::string& chosen, const std::string& help,
                   const std::function<void(std::size_t)>& setter);
+  void check_files() const;
   std::optional<int> parse(int argc, const char* const* argv);
   int guarded(const std::function<int()>& body) const;
   int complain(int code, const std::string& message) const;
@@ -140,6 +168,8 @@ private:
   std::string m_usage; ///< what --help is asked of: the name, with the command
   std::unique_ptr<Parser> m_parser;
   mutable std::vector<std::string> m_notes;
+  std::vector<std::function<void()>> m_file_checks; ///< of what was declared
+  mutable FileRoles m_files;
   bool m_quiet = false;
   bool m_verbose = false;
   bool m_json = false;

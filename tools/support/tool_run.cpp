@@ -1,12 +1,13 @@
 // What a program does once its command line is read: the body, its errors and its output.
+#include <support/process.h>
 #include <support/tool.h>
 
 #include <wavelet/error.h>
+#include <wavelet/out_of_memory.h>
 #include <wavelet/parallel.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 
@@ -28,12 +29,14 @@ void say(const std::string& line) {
 } // namespace
 
 int Tool::run(int argc, const char* const* argv, const std::function<int()>& body) {
-  std::signal(SIGPIPE, SIG_IGN); // a closed pipe is an output error like any other
-  std::signal(SIGXFSZ, SIG_IGN); // and so is a file size limit
+  prepare_process(m_name);
   if (const auto code = parse(argc, argv))
     return *code;
   const ThreadLimit limit(m_threads);
-  const int code = guarded(body);
+  const int code = guarded([&] {
+    check_files();
+    return body();
+  });
   if (code < exit_usage && !m_quiet)
     std::for_each(m_notes.begin(), m_notes.end(), say);
   return code;
@@ -46,6 +49,8 @@ int Tool::guarded(const std::function<int()>& body) const {
     return complain(exit_usage, std::string(error.what()) + " (see " + m_usage + " --help)");
   } catch (const Error& error) {
     return complain(error.kind() == ErrorKind::Input ? exit_input : exit_output, error.what());
+  } catch (const OutOfMemory& error) {
+    return complain(exit_internal, error.what());
   } catch (const std::bad_alloc&) {
     return complain(exit_internal, "out of memory");
   } catch (const std::exception& error) {
@@ -74,9 +79,13 @@ void Tool::detail(const std::string& line) const {
 void Tool::print(const Report& report) const { print(m_json ? report.json() : report.text()); }
 
 void Tool::print(const std::string& text) const {
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!written || std::fflush(stdout) != 0)
-    throw_output_error("standard output",
+  const bool aside = m_files.writes_standard_output();
+  if (aside && m_quiet)
+    return;
+  std::FILE* const stream = aside ? stderr : stdout;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  if (!written || std::fflush(stream) != 0)
+    throw_output_error(aside ? "standard error" : "standard output",
                        std::string("cannot be written: ") + std::strerror(errno));
 }
 

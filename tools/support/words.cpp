@@ -67,7 +67,7 @@ bool has_extension(const std::string& path, const std::string& extension) {
 }
 
 void check_picture_path(const std::string& path, const std::string& option) {
-  if (!path.empty() && !has_extension(path, ".png") && !has_extension(path, ".exr"))
+  if (!path.empty() && path != "-" && !has_extension(path, ".png") && !has_extension(path, ".exr"))
     throw UsageError(option + ": '" + path + "' ends in neither .png nor .exr");
 }
 

@@ -16,7 +16,7 @@ std::vector<double> numbers_of(const std::string& word, std::size_t count, doubl
 /// True if there is a name and it ends so, as in ".haar".
 bool has_extension(const std::string& path, const std::string& extension);
 
-/// Nothing for an empty path. @param option for the error
+/// Nothing for an empty path and for standard output. @param option for the error
 /// @throws UsageError if `path` ends in neither .png nor .exr
 void check_picture_path(const std::string& path, const std::string& option);
 

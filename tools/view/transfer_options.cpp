@@ -18,11 +18,12 @@ void declare_transfer(tool::Tool& app, TransferOptions& options) {
              "Of transfer: yaw, pitch, roll in degrees that the light is turned by, as haarrelight "
              "apply has it",
              3, -1e6, 1e6);
-  app.text(options.light, "--light", "PROBE",
-           "Of transfer: another light, any probe image, or a .haar of one world-frame map [the "
-           "scene's]");
-  app.text(options.scene, "--scene", "SCENE.json",
-           "Of transfer: the scene it was made of [the file of that name beside it]");
+  app.optional_input(
+      options.light, "--light", "PROBE",
+      "Of transfer: another light, any probe image, or a .haar of one world-frame map [the "
+      "scene's]");
+  app.optional_input(options.scene, "--scene", "SCENE.json",
+                     "Of transfer: the scene it was made of [the file of that name beside it]");
 }
 
 void check_transfer(const tool::Tool& app) {

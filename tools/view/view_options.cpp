@@ -23,8 +23,9 @@ void declare_environment(tool::Tool& app, Options& options) {
   app.flag(options.environment, "--environment",
            "Light by the scene's probe in place of a lamp: the integral of reflectance and light, "
            "square by square");
-  app.text(options.probe, "--probe", "FILE",
-           "Probe image, or light's trees, in place of the scene's; implies --environment");
+  app.optional_input(
+      options.probe, "--probe", "FILE",
+      "Probe image, or light's trees, in place of the scene's; implies --environment");
   app.value(options.light_level, "--light-level",
             "Of --environment: the light is kept as 2^N squares a side; without, 10, and 8 for an "
             "--export alone",
@@ -41,9 +42,9 @@ void declare(tool::Tool& app, Options& options) {
   app.input(options.input, "SCENE.json|FILE.haar",
             "Scene of spheres and planes, or a set of a BRDF's trees by θ_r, shown on a sphere, or "
             "transfer that haarrelight built with --vary light");
-  app.text(options.frame, "--frame", "OUT.exr|.png",
-           "Picture to write, in place of a window to show; a .png is tone-mapped");
-  app.text(
+  app.optional_output(options.frame, "--frame", "OUT.exr|.png",
+                      "Picture to write, in place of a window to show; a .png is tone-mapped");
+  app.optional_output(
       options.page, "--export", "PAGE.html",
       "Page to write, in place of a window, that shows the same in a browser with WebGL 2, all "
       "in one file; with --compare, its #check compares as well");
@@ -60,8 +61,9 @@ void declare(tool::Tool& app, Options& options) {
            "Report the relative root mean square error of the frame, and of frames at every level, "
            "against the same trees evaluated on the CPU at full level (of --environment: against "
            "haarrender's product-integral, without the background)");
-  app.text(options.reference, "--reference", "REF.exr",
-           "Picture to --compare with in place of that; of --environment without its background");
+  app.optional_input(
+      options.reference, "--reference", "REF.exr",
+      "Picture to --compare with in place of that; of --environment without its background");
   declare_window(app, options.window);
   declare_transfer(app, options.transfer);
   app.offer_json();

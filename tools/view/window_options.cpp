@@ -8,16 +8,17 @@ namespace haarlight::view {
 
 void declare_window(tool::Tool& app, WindowOptions& options) {
   WindowInput& input = options.input;
-  app.text(input.against, "--against", "FILE.haar|SCENE.json",
-           "In the window: shown beside the first; trees take the place of the scene's first "
-           "material");
-  app.text_list(
+  app.optional_input(
+      input.against, "--against", "FILE.haar|SCENE.json",
+      "In the window: shown beside the first; trees take the place of the scene's first "
+      "material");
+  app.optional_inputs(
       input.materials, "--material", "FILE.haar",
       "In the window: trees to choose from, before those in the folder of the first file");
   app.flag(input.watch, "--watch", "In the window: read files again when they are rewritten");
   app.flag(input.bare, "--no-panel", "The window begins without its controls; Tab shows them");
-  app.text(options.screenshot, "--screenshot", "OUT.png",
-           "Save the window as it is at the last of --frames");
+  app.optional_output(options.screenshot, "--screenshot", "OUT.png",
+                      "Save the window as it is at the last of --frames");
   app.value(input.script.frames, "--frames", "Close the window after so many frames", 1, 1000000);
   app.value(
       input.script.turn, "--turn",
@@ -44,7 +45,7 @@ void check_window(const tool::Tool& app, const WindowOptions& options, bool wind
     throw tool::UsageError("--reloads: needs --watch as well");
   if (options.screenshot.empty())
     return;
-  if (!tool::has_extension(options.screenshot, ".png"))
+  if (options.screenshot != standard_output && !tool::has_extension(options.screenshot, ".png"))
     throw tool::UsageError("--screenshot: \"" + options.screenshot + "\" does not end in .png");
   const OutputFile trial(options.screenshot);
 }

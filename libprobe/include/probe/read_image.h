@@ -16,12 +16,22 @@ struct LoadedImage {
   std::vector<std::string> notes; ///< what was changed on reading, a sentence each
 };
 
-/// Reads Radiance RGBE (known by its content), and through OpenImageIO, loaded when first needed,
-/// everything that reads: OpenEXR, PFM, TIFF … Grey becomes RGB, alpha is dropped, values encoded
-/// for display are made linear, negative ones are set to 0 and counted in a note.
-/// @throws Error(Input) if the file is missing, no picture, truncated, too large, or holds a NaN or
-///         an infinity, whose pixel is named
-LoadedImage read_image(const std::string& path);
+/// Which image of a file with several is meant; empty texts leave the choice to the reader.
+struct ImageChoice {
+  std::string layer; ///< OpenEXR: what precedes the last dot of the channel names
+  std::string part;  ///< OpenEXR: name or number of a part; TIFF: number of a page; from 0
+};
+
+/// Reads Radiance RGBE, OpenEXR, PFM, TIFF, PNG and JPEG, known by their content. Grey becomes RGB;
+/// values encoded for display are made linear, other primaries are converted to Rec. 709,
+/// orientation tags are obeyed; negative values are set to 0. Notes state what was done. OpenEXR:
+/// the data window is placed in the display window. Formats other than RGBE and PFM are decoded by
+/// a separate program with limits of memory and time.
+/// @throws Error(Input) if the file is missing, of no accepted format, damaged, truncated, too
+/// large,
+///         ambiguous (several layers or parts hold colours and none is chosen), or holds a NaN or
+///         an infinity, whose pixel is named; std::runtime_error if the program cannot be started
+LoadedImage read_image(const std::string& path, const ImageChoice& choice = {});
 
 /// What read_image does to pixels: refuses NaN and infinities, clamps negative values.
 /// @return values that were negative

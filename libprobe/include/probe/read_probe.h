@@ -2,6 +2,7 @@
 // From a file to a probe in one call.
 
 #include <probe/probe.h>
+#include <probe/read_image.h>
 
 #include <wavelet/provenance.h>
 
@@ -34,6 +35,6 @@ struct LoadedProbe {
 /// @param mapping nothing = detect_mapping
 /// @throws Error(Input) as read_image, detect_mapping and Probe do
 LoadedProbe read_probe(const std::string& path, std::optional<Mapping> mapping = std::nullopt,
-                       Lookup lookup = Lookup::Nearest);
+                       Lookup lookup = Lookup::Nearest, const ImageChoice& choice = {});
 
 } // namespace haarlight::probe

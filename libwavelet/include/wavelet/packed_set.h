@@ -19,6 +19,7 @@ enum class FileForm { Mapped, Packed };
 
 /// Which form of a .haar file this is by its first bytes; nothing if it is no .haar file.
 /// @throws Error(Input) if it cannot be read
+std::optional<FileForm> file_form(const InputFile& file);
 std::optional<FileForm> file_form(const std::string& path);
 
 /// Writes a set in its packed form, some blocks of trees at a time and from several threads. The
@@ -46,7 +47,8 @@ private:
   std::vector<Tree> m_pending;
   std::vector<std::vector<Tree>> m_blocks;
   std::uint32_t m_block_count = 0;
-  std::uint32_t m_text_bytes = 0;
+  std::uint64_t m_empty_nodes = 0;
+  std::vector<std::byte> m_text_frame;
 };
 
 /// Packs a mapped file. The caller commits `file`.
@@ -58,8 +60,9 @@ void pack(const std::string& mapped_path, OutputFile& file, const Progress& prog
 /// @throws Error(Input) naming the first broken rule and its byte offset in the packed file
 void unpack(const std::string& packed_path, OutputFile& file, const Progress& progress = {});
 
-/// Opens either form. A packed file is unpacked into a temporary one, which has no name and goes
-/// with the TreeSet. @throws as unpack() and TreeSet()
+/// Opens either form. A packed file is unpacked into memory.
+/// @throws as unpack() and TreeSet(), and Error(Input) if that takes more than available_memory()
+TreeSet open_tree_set(InputFile file, Check check = Check::Everything);
 TreeSet open_tree_set(const std::string& path, Check check = Check::Everything);
 
 } // namespace haarlight::wavelet

@@ -8,8 +8,9 @@
 namespace haarlight {
 
 /// Calls body(begin, end) on disjoint ranges covering [0, count), from several threads.
-/// An exception from a body stops the loop and is rethrown here.
-/// @param grain indices a range holds at least
+/// An exception from a body stops the loop and is rethrown here. Where the system refuses further
+/// threads, those that exist do the work. Loops may be nested.
+/// @param grain indices a range holds at least, if there are as many
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body);
 
@@ -21,7 +22,8 @@ inline void parallel_for(std::size_t count, const std::function<void(std::size_t
   });
 }
 
-/// Bounds the threads of this process while it lives; 0 = as many as the machine offers.
+/// Bounds the threads of this process while it lives; 0 = as many as the machine offers. More than
+/// the process has CPUs are never used, nor more than an outer limit allows.
 class ThreadLimit {
 public:
   explicit ThreadLimit(int threads);
@@ -30,7 +32,7 @@ public:
   ThreadLimit& operator=(const ThreadLimit&) = delete;
 
 private:
-  void* m_control;
+  int m_previous;
 };
 
 /// Threads that parallel_for uses now.

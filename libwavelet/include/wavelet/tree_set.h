@@ -1,14 +1,16 @@
 #pragma once
-// .haar files: sets of trees in one mapped file. The format is specified in FORMAT.md.
+// .haar files: sets of trees in one file. The format is specified in FORMAT.md.
 
 #include <wavelet/input_file.h>
 #include <wavelet/map_set.h>
 #include <wavelet/output_file.h>
 #include <wavelet/tree.h>
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,20 +23,21 @@ class SetLayout;
 /// and no tree is ever handed out unchecked.
 enum class Check {
   Everything, ///< all trees at opening, from several threads
-  WhenUsed    ///< a tree when it is first asked for, so that opening takes no time for the others
+  WhenUsed    ///< a tree is read and checked when it is first asked for
 };
 
-/// A .haar file in its mapped form; its trees are used where they lie.
+/// A .haar file in its mapped form. Trees are used as they lie in a private copy of the file, so
+/// that nothing that happens to the file afterwards changes them.
 class TreeSet {
 public:
-  /// Maps the file and checks it: checksum and structure of a tree in one go.
+  /// Reads the file and checks it: checksum and structure of a tree in one go.
   /// @throws Error(Input) naming the first broken rule of FORMAT.md and its byte offset; for a
   ///         packed file, what unpacks it
   explicit TreeSet(const std::string& path, Check check = Check::Everything);
   explicit TreeSet(InputFile file, Check check = Check::Everything);
 
   const std::string& path() const { return m_file.path(); }
-  std::uint64_t file_bytes() const { return m_file.bytes().size(); }
+  std::uint64_t file_bytes() const { return m_file.size(); }
   std::span<const std::byte> bytes() const { return m_file.bytes(); }
   const SetInfo& info() const { return m_info; }
   int levels() const { return m_levels; }
@@ -79,6 +82,9 @@ private:
   std::vector<TreeView> m_trees;
   std::vector<std::uint64_t> m_checksums;
   mutable std::vector<Flag> m_checked;
+  /// A tree is read and checked by one thread, which holds one of these.
+  std::unique_ptr<std::array<std::mutex, 64>> m_mutexes =
+      std::make_unique<std::array<std::mutex, 64>>();
 };
 
 /// True if the first bytes are those of a .haar file of either form, which may be damaged all the

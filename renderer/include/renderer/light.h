@@ -51,8 +51,9 @@ public:
 
   /// Average radiance over the squares of a map, in the light's own frame, of the probe or else of
   /// the tree; never negative. No finer than the tree, or much finer than the probe.
-  /// @param most pixels along a side at most, a power of two ≥ 4
-  wavelet::Map map(int most) const;
+  /// @param most  pixels along a side at most, a power of two ≥ 4
+  /// @param least pixels along a side of a probe's map at least, a power of two ≥ 4
+  wavelet::Map map(int most, int least = 4) const;
 
   Vec3 to_world(const Vec3& w) const { return m_turned ? Vec3(m_to_world * w) : w; }
   Vec3 to_light(const Vec3& w) const { return m_turned ? Vec3(m_to_world.transpose() * w) : w; }

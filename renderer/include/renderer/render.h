@@ -23,7 +23,9 @@ inline constexpr float integral_variance_bound = 0.001F;
 /// How samples become radiance.
 enum class Estimator {
   Unbiased,      ///< 1/N Σ f_r L v cos / p
-  Bidirectional, ///< L_ns · mean(v), the paper's eq. 9: directions must follow the product
+  Bidirectional, ///< L_ns · mean(v), the paper's eq. 9: directions must follow the product. v
+                 ///< counts occluders alone, whatever f_r is; directions below the horizon are left
+                 ///< out
   Ratio          ///< L_ns · Σ w v / Σ w, w = f_r L cos / p (Heitz, Hill and McGuire 2018)
 };
 

@@ -6,6 +6,7 @@
 #include <renderer/points.h>
 #include <renderer/sampler_kind.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,15 +16,33 @@ namespace haarlight::renderer {
 
 class LoadedScene;
 
+/// The technique that drew a sample. A sampler with two techniques draws a fixed number of samples
+/// with each, so that the estimate varies within techniques only.
+enum class Technique : std::uint8_t {
+  First,
+  Second,
+  Fixed ///< the same direction for every seed
+};
+inline constexpr std::size_t random_techniques = 2; ///< First and Second
+
 /// A direction and the density it counts with. For several techniques at once this is their mean
 /// density, weighted by their numbers of samples, which makes f/pdf the balance heuristic; for
 /// resampled directions it is the reciprocal of the weight they count with.
 struct DirectionSample {
   Vec3 direction; ///< unit, in the light's frame
   float pdf = 0;  ///< sr⁻¹; 0 = no direction could be drawn, it contributes nothing
+  Technique technique = Technique::First;
 };
 
-/// Where a pixel's random points come from.
+/// Variances and covariance of two sums over samples, Σ w v and Σ w: w is the luminance of a
+/// sample's unshadowed contribution f_r L cos / pdf, v ∈ {0, 1} its visibility.
+struct SumVariance {
+  double shadowed = 0;
+  double covariance = 0;
+  double unshadowed = 0;
+};
+
+/// The point sets of a pixel's samples. Sets of different dimensions are independent of each other.
 struct PointSource {
   Points kind = Points::Sobol;
   std::uint32_t key = 0;   ///< of the pixel and the seed
@@ -62,6 +81,13 @@ public:
   /// The point's unshadowed radiance as this sampler's product knows it, L_ns of the paper's eq. 8;
   /// nothing for samplers that have no product.
   virtual std::optional<Rgb> unshadowed() const { return std::nullopt; }
+
+  /// The part of the sums' variance that the samples of the last sample() have in common, besides
+  /// that of independent samples: resampled ones share a pool of candidates.
+  /// @param visible of each sample, not 0 if it is unoccluded
+  virtual SumVariance shared_variance(std::span<const std::uint8_t> /*visible*/) const {
+    return {};
+  }
 
   /// Leaves of the product at hand, 0 without one.
   virtual std::size_t leaves() const { return 0; }

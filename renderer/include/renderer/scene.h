@@ -35,6 +35,8 @@ struct LightDescription {
   std::string table;            ///< trees of the table of rotated maps, or empty
   std::string mapping = "auto"; ///< how `probe` shows the sphere: auto, angular, latlong,
                                 ///< mirrorball or octahedral
+  std::string layer;            ///< layer of `probe` (OpenEXR), or empty
+  std::string part;             ///< part (OpenEXR) or page (TIFF) of `probe`, or empty
   double rotate = 0; ///< degrees the light is turned about world +y, right-handed: the light from
                      ///< ω is what the probe shows at ω turned by −rotate
   bool background = true; ///< the light itself is seen where no object is; else black

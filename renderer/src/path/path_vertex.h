@@ -19,8 +19,7 @@ struct Departure {
   float pdf = 0;                  ///< sr⁻¹, of the reflectance's sampling
 };
 
-/// Where the random points of a vertex's samples come from; those of different dimensions and keys
-/// go together.
+/// The point sets of a vertex's samples.
 struct VertexPoints {
   Points kind = Points::Sobol;
   std::uint32_t key = 0;   ///< of pixel, seed and vertex
@@ -28,8 +27,7 @@ struct VertexPoints {
 
   /// @param each points for each path, side by side
   void fill(std::uint32_t dimension, int each, std::span<Vec2> out) const {
-    fill_shuffled_points(kind, hash_words(key, dimension), first * static_cast<std::uint32_t>(each),
-                         out);
+    fill_points(kind, hash_words(key, dimension), first * static_cast<std::uint32_t>(each), out);
   }
 };
 

@@ -17,21 +17,22 @@ public:
 private:
   static constexpr std::size_t batch = 64;
 
-  void sample_round(const PointSource& points, std::span<DirectionSample> out) override {
+  std::size_t sample_round(const PointSource& points, std::span<DirectionSample> out) override {
     m_accepted.clear();
     const std::size_t most = candidates_of(out.size());
     while (m_accepted.size() < out.size() && pool().size() < most)
       try_batch(points, std::min(batch, most - pool().size()), out.size());
     for (std::size_t i = 0; i < m_accepted.size(); ++i)
-      out[i] = pool().chosen(m_accepted[i], mean_weight());
+      out[i] = take(m_accepted[i]);
     resample(points, out.subspan(m_accepted.size()));
+    return m_accepted.size();
   }
 
   void try_batch(const PointSource& points, std::size_t count, std::size_t wanted) {
     const std::size_t first = pool().size();
     m_acceptance.resize(count);
-    fill_points(Points::Random, hash_words(points.key, 4),
-                static_cast<std::uint32_t>(candidates_of(points.first) + first), m_acceptance);
+    const auto index = static_cast<std::uint32_t>(candidates_of(points.first) + first);
+    PointSource{points.kind, points.key, index}.fill(4, m_acceptance);
     draw(points, count, bound());
     for (std::size_t i = 0; i < count && m_accepted.size() < wanted; ++i)
       if (m_acceptance[i].x() * bound() < pool().weight(first + i))

@@ -14,9 +14,10 @@ public:
   using BidirectionalSampler::BidirectionalSampler;
 
 private:
-  void sample_round(const PointSource& points, std::span<DirectionSample> out) override {
+  std::size_t sample_round(const PointSource& points, std::span<DirectionSample> out) override {
     draw(points, candidates_of(out.size()), std::numeric_limits<float>::max());
     resample(points, out);
+    return 0;
   }
 };
 

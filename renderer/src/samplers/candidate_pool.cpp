@@ -35,6 +35,13 @@ void CandidatePool::weigh(const Light& light, const ShadingPoint& point, const M
   }
 }
 
+double CandidatePool::mean_square() const {
+  double sum = 0;
+  for (const float weight : m_weights)
+    sum += static_cast<double>(weight) * static_cast<double>(weight);
+  return m_weights.empty() ? 0 : sum / static_cast<double>(m_weights.size());
+}
+
 std::size_t CandidatePool::choose(std::size_t begin, std::size_t end, double place) const {
   const auto sums = m_sums.begin();
   const auto from = sums + static_cast<std::ptrdiff_t>(begin) + 1;

@@ -32,6 +32,9 @@ public:
   /// Sum of the weights of candidates begin … end − 1.
   double sum(std::size_t begin, std::size_t end) const { return m_sums[end] - m_sums[begin]; }
 
+  /// Mean of the squares of all weights.
+  double mean_square() const;
+
   /// The candidate that a place in [0, sum(begin, end)) falls on, in proportion to weight.
   std::size_t choose(std::size_t begin, std::size_t end, double place) const;
 

@@ -9,13 +9,16 @@ namespace {
 
 /// As fine as a probe of a thousand pixels across, and soon gone through.
 constexpr int map_size = 512;
+/// Of coarser probes: regions within one of their pixels can be this small.
+constexpr int least_map_size = 128;
 
 /// Lamps as samples; where there are fewer lamps than samples the rest count nothing.
 struct LampSamples {
   LampSamples(std::span<const Lamp> lamps, std::size_t count)
-      : samples(count, {Vec3::UnitZ(), 0}), radiance(count, Rgb::Zero()) {
+      : samples(count, {Vec3::UnitZ(), 0, Technique::Fixed}), radiance(count, Rgb::Zero()) {
     for (std::size_t i = 0; i < lamps.size(); ++i) {
-      samples[i] = {lamps[i].direction, 1 / (static_cast<float>(count) * lamps[i].solid_angle)};
+      samples[i] = {lamps[i].direction, 1 / (static_cast<float>(count) * lamps[i].solid_angle),
+                    Technique::Fixed};
       radiance[i] = lamps[i].radiance;
     }
   }
@@ -99,7 +102,7 @@ private:
 } // namespace
 
 LightPixels::LightPixels(const Light& light) {
-  const wavelet::Map map = light.map(map_size);
+  const wavelet::Map map = light.map(map_size, least_map_size);
   size = map.size;
   const auto side = static_cast<float>(size);
   solid_angle = wavelet::sphere_area / (side * side);

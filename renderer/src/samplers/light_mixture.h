@@ -1,24 +1,26 @@
 #pragma once
-// Products in the light's frame, a share of whose samples may follow the light itself: what the
-// product takes for hidden, or for the foot of a lobe, then weighs no more than its reflectance.
+// Products in the light's frame, mixed with samples of the light alone: where the product's density
+// is too low, behind an occluder or at the foot of a lobe, weights then stay bounded.
 
 #include "product_tree_sampler.h"
+#include "technique_split.h"
 
 namespace haarlight::renderer {
 
 /// prepare() of the derived sampler sets m_product and m_mixes.
 class LightMixture : public ProductTreeSampler {
 public:
-  /// @param each one of so many samples follows the light, where m_mixes
+  /// @param each of so many samples one follows the light where m_mixes, at least 4
   LightMixture(const Light& light, std::size_t each) : m_light(light), m_each(each) {}
 
   void sample(const PointSource& points, std::span<DirectionSample> out) override {
-    const std::size_t of_light = m_mixes ? light_count(out.size()) : 0;
+    if (!m_mixes)
+      return ProductTreeSampler::sample(points, out);
+    const TechniqueSplit split = split_of(out.size());
+    const std::size_t of_light = split.count(points, out.size());
+    const float share = split.fraction();
     const std::span<DirectionSample> own = out.first(out.size() - of_light);
     ProductTreeSampler::sample(points, own);
-    if (of_light == 0)
-      return;
-    const float share = static_cast<float>(of_light) / static_cast<float>(out.size());
     for (DirectionSample& s : own)
       s.pdf = (1 - share) * s.pdf + share * m_light.pdf(s.direction);
     sample_light(points, share, out.last(of_light));
@@ -28,7 +30,7 @@ public:
     const float own = ProductTreeSampler::pdf(direction, count);
     if (!m_mixes)
       return own;
-    const float share = static_cast<float>(light_count(count)) / static_cast<float>(count);
+    const float share = split_of(count).fraction();
     return (1 - share) * own + share * m_light.pdf(direction);
   }
 
@@ -36,7 +38,14 @@ protected:
   bool m_mixes = false;
 
 private:
-  std::size_t light_count(std::size_t count) const { return count / m_each; }
+  /// Two samples at least, from which their variance is estimated, but no more than a quarter; one
+  /// of two or three.
+  TechniqueSplit split_of(std::size_t count) const {
+    if (count == 1)
+      return {1, 4};
+    const std::size_t guard = std::clamp<std::size_t>(count / 4, 1, 2);
+    return {std::max(count / m_each, guard), count};
+  }
 
   void sample_light(const PointSource& points, float share, std::span<DirectionSample> out) {
     m_points.resize(out.size());
@@ -46,7 +55,8 @@ private:
     for (std::size_t i = 0; i < out.size(); ++i) {
       const Vec3& direction = m_samples[i].direction;
       out[i] = {direction,
-                (1 - share) * ProductTreeSampler::pdf(direction, 1) + share * m_samples[i].pdf};
+                (1 - share) * ProductTreeSampler::pdf(direction, 1) + share * m_samples[i].pdf,
+                Technique::Second};
     }
   }
 

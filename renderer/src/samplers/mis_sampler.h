@@ -2,12 +2,14 @@
 // Multiple importance sampling of light and reflectance, whatever the heuristic that weights them.
 
 #include "lobe_sampling.h"
+#include "technique_split.h"
 
 namespace haarlight::renderer {
 
-/// The first half of a pixel's samples follow the light, the rest the reflectance. Of N samples,
-/// n_i from density p_i, one of technique i adds w_i f / (n_i p_i) to the estimate, which here is f
-/// / (N pdf) with pdf = n_i p_i / (w_i N): what Heuristic gives of the shares s_i = n_i p_i / N.
+/// The first half of a pixel's samples follow the light, the rest the reflectance; a single sample
+/// follows either. Of N samples, n_i from density p_i, one of technique i adds w_i f / (n_i p_i) to
+/// the estimate, which here is f / (N pdf) with pdf = n_i p_i / (w_i N): Heuristic computes it from
+/// the shares s_i = n_i p_i / N.
 /// @tparam Heuristic has `static float density(float own, float other)`, own and other being the
 /// shares of the technique that drew a sample and of the other one
 template <class Heuristic>
@@ -20,15 +22,16 @@ public:
   }
 
   void sample(const PointSource& points, std::span<DirectionSample> out) override {
-    const std::size_t from_light = light_share(out.size());
-    m_part = static_cast<float>(from_light) / static_cast<float>(out.size());
+    const TechniqueSplit split = split_of(out.size());
+    const std::size_t from_light = split.count(points, out.size());
+    m_part = split.fraction();
     sample_light(points, out.first(from_light));
     sample_lobe(points, out.subspan(from_light));
   }
 
   /// The density that all samples together are drawn with, Σ s_i.
   float pdf(const Vec3& direction, std::size_t count) const override {
-    const float part = static_cast<float>(light_share(count)) / static_cast<float>(count);
+    const float part = split_of(count).fraction();
     return part * m_light.pdf(direction) + (1.0F - part) * m_lobe.pdf(direction);
   }
 
@@ -39,7 +42,7 @@ private:
     points.fill(0, m_points);
     m_light.sample(m_points, m_samples);
     for (std::size_t i = 0; i < out.size(); ++i)
-      out[i].direction = m_samples[i].direction;
+      out[i] = {m_samples[i].direction};
     m_lobe.pdfs(out);
     for (std::size_t i = 0; i < out.size(); ++i)
       out[i].pdf = Heuristic::density(m_part * m_samples[i].pdf, (1.0F - m_part) * out[i].pdf);
@@ -49,11 +52,15 @@ private:
     m_points.resize(out.size());
     points.fill(1, m_points);
     m_lobe.sample(m_points, out);
-    for (DirectionSample& s : out)
+    for (DirectionSample& s : out) {
       s.pdf = Heuristic::density((1.0F - m_part) * s.pdf, m_part * m_light.pdf(s.direction));
+      s.technique = Technique::Second;
+    }
   }
 
-  static std::size_t light_share(std::size_t count) { return (count + 1) / 2; }
+  static TechniqueSplit split_of(std::size_t count) {
+    return count == 1 ? TechniqueSplit{1, 2} : TechniqueSplit{(count + 1) / 2, count};
+  }
 
   const Light& m_light;
   Lobe m_lobe;

@@ -184,7 +184,8 @@ public:
     ++m_cost.points;
     m_cost.leaves += product.leaf_count();
     const auto leaves = m_masked.build(product, m_masks.at(seen.hit));
-    sums.add(m_reflected.integral(point, material, leaves) * wavelet::sphere_area, true, 0);
+    sums.add(m_reflected.integral(point, material, leaves) * wavelet::sphere_area, true, 0,
+             Technique::Fixed);
   }
 
 private:

@@ -1,0 +1,21 @@
+// Mapped .haar files.
+#include "fuzz_target.h"
+#include "haar_mutator.h"
+#include "walk_trees.h"
+
+using namespace haarlight;
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return fuzzing::mutate_mapped(data, size, max_size, seed);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static fuzzing::MemoryFile file;
+  file.assign(fuzzing::bytes_of(data, size));
+  fuzzing::read_or_refuse([&] {
+    const wavelet::TreeSet set(file.path(), wavelet::Check::WhenUsed);
+    fuzzing::walk(set);
+  });
+  return 0;
+}
