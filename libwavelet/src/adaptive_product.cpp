@@ -72,9 +72,10 @@ void AdaptiveProduct::turn_to(const RotatedReflectance& reflectance,
   floor[3] = 0;
   const float light = lane_sum(to_lanes(m_light.mean) * luminance_lanes);
   const float reflected = lane_sum(mean * luminance_lanes);
-  // Apart, for their product may leave the range of float.
-  const float scale = detail::density_scale(light) * detail::density_scale(reflected);
-  m_product.m_rests[0].weights = luminance_lanes * (scale > 0 ? scale : 1.0F);
+  // Apart, for the product of the means may leave the range of float.
+  const float scale = std::clamp(detail::density_scale(light) * detail::density_scale(reflected),
+                                 0x1p-100F, 0x1p100F);
+  m_product.m_rests[0].weights = luminance_lanes * scale;
 }
 
 const ProductTree& AdaptiveProduct::build(const RotatedReflectance& reflectance,

@@ -192,3 +192,48 @@ TEST_CASE("products that may not grow follow to far points all the same") {
           Approx(luminance(pair.fresh.build(reflectance, scarce).integral())).epsilon(0.02));
   }
 }
+
+TEST_CASE("products of lights and lobes of any scale have the same density") {
+  Map light = random_map(64, 9);
+  Map lobe = lobe_map(64, 0);
+  const auto scaled = [](Map map, float factor) {
+    for (float& value : map.rgb)
+      value *= factor;
+    return map;
+  };
+  const Vec3 n = Vec3(0.3F, 0.2F, 1).normalized();
+  const Vec3 wo = (n + 0.5F * frame_about(n).t).normalized();
+  const auto densities = [&](float light_factor, float lobe_factor) {
+    const Tree light_tree = tree_of(scaled(light, light_factor), 0);
+    const Tree lobe_tree = tree_of(scaled(lobe, lobe_factor), 0);
+    const TreeView views[2] = {lobe_tree.view(), lobe_tree.view()};
+    const Pyramid pyramid(views);
+    AdaptiveProduct product(light_tree.view());
+    const ProductTree& tree = product.build(reflectance_at(pyramid, n, wo, 0.5F), {});
+    std::vector<float> result;
+    for (int i = 0; i < 200; ++i) {
+      const auto k = static_cast<float>(i);
+      const Descent d = tree.sample(std::fmod(k * 0.754878F, 1.0F), std::fmod(k * 0.56984F, 1.0F));
+      REQUIRE(std::isfinite(d.x + d.u1 + d.u2 + d.pdf));
+      const Vec2 p = end_point(d);
+      CHECK(tree.pdf(p.x(), p.y()) == Approx(d.pdf).epsilon(1e-3));
+      result.push_back(d.pdf);
+    }
+    return result;
+  };
+  const std::vector<float> expected = densities(1, 1);
+  // Powers of two change no digit.
+  for (const auto& [a, b] : {std::pair(0x1p-80F, 1.0F), std::pair(0x1p-70F, 0x1p-50F),
+                             std::pair(1.0F, 0x1p-50F), std::pair(0x1p50F, 1.0F)}) {
+    const std::vector<float> found = densities(a, b);
+    INFO(a << " " << b);
+    double difference = 0;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      difference += static_cast<double>(std::abs(found[i] / expected[i] - 1));
+    CHECK(difference / 200 < 0.01);
+  }
+  // Beyond these squares of values leave the range of float, which costs accuracy but no more.
+  for (const auto& [a, b] : {std::pair(0x1p-133F, 1.0F), std::pair(1.0F, 0x1p-110F),
+                             std::pair(0x1p100F, 1.0F), std::pair(0x1p90F, 0x1p-90F)})
+    densities(a, b);
+}

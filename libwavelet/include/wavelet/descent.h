@@ -76,11 +76,14 @@ namespace detail {
 /// A power of two by which weights of this mean are multiplied so that neither they nor their sums
 /// leave the range of float: 1 unless they are extreme, since densities depend on ratios alone.
 inline float density_scale(float mean) {
-  constexpr int most = 60; // sums and details of a tree add less than another 2^60
-  if (!(mean > 0) || !std::isfinite(mean))
-    return mean > 0 ? 0x1p-100F : 1.0F;
+  constexpr int most = 60;   // details and sums of a tree exceed its mean by less than another 2^60
+  constexpr int limit = 100; // leaves room for the values that the scale is multiplied by
+  if (!(mean > 0))
+    return 1;
+  if (!std::isfinite(mean))
+    return std::ldexp(1.0F, -limit);
   const int exponent = std::ilogb(mean);
-  return std::abs(exponent) <= most ? 1.0F : std::ldexp(1.0F, std::clamp(-exponent, -126, 127));
+  return std::abs(exponent) <= most ? 1.0F : std::ldexp(1.0F, std::clamp(-exponent, -limit, limit));
 }
 
 } // namespace detail
