@@ -8,7 +8,7 @@ probe() {
     for i in {1..32}; do
       value=$2
       [ "$i" -eq 21 ] && value=$3
-      printf "$value$value$value"
+      printf '%b' "$value$value$value"
     done; } >"$1.pfm"
 }
 zero='\0\0\0\0' one='\0\0\200\77' tiny='\302\26\1\0' huge='\245\324\150\123' # 1e-40, 1e12
