@@ -1,12 +1,11 @@
 // haarbench: compares samplers at equal samples and at equal time.
 #include <bench/cache.h>
 #include <bench/measure.h>
-#include <bench/page.h>
+#include <bench/report.h>
 #include <bench/pairs.h>
 #include <bench/plan.h>
 #include <bench/scenes.h>
-#include <bench/summary.h>
-#include <html/text_file.h>
+#include <html/page.h>
 #include <render/film_output.h>
 #include <support/program.h>
 #include <support/progress.h>

@@ -1,5 +1,5 @@
 // haarinfo: what a .haar file holds.
-#include <html/text_file.h>
+#include <html/page.h>
 #include <info/page.h>
 #include <support/map_choice.h>
 #include <support/program.h>

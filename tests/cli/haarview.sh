@@ -120,7 +120,7 @@ scene many.json '{"type": "sphere", "center": [0, -0.7, 1.5], "radius": 0.3, "ma
 columns=$(for i in $(seq 550); do printf '"m%d": {"haar": "brdf.haar"}, ' "$i"; done)
 sed -i "s/\"floor\": {/$columns&/" many.json
 expect 4 haarview many.json --frame picture.exr
-says "GL: what is to be shown takes a texture of"
+says "GL: the scene needs a texture with a side of"
 refuses_bad_input picture.exr haarview @ --frame picture.exr
 refuses_bad_output .html haarview brdf.haar --size 64x64 --export @
 refuses_bad_output .exr haarview brdf.haar --size 64x64 --frame @

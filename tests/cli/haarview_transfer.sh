@@ -71,20 +71,20 @@ rm -r elsewhere bare.json frame.png
 
 # what goes wrong
 expect 3 haarview object.haar --frame picture.exr
-says "lets object:1 vary; this takes one built with --vary light"
+says "was built with --vary object:1; expected --vary light"
 expect 2 haarview object.haar --frame picture.exr --rotate 10,0,0
 says "--vary light"
 for option in "--size 8x8" "--environment" "--probe studio.hdr" "--light-direction 0,0,1" "--export page.html"; do
   # shellcheck disable=SC2086
   expect 2 haarview light.haar --frame picture.exr $option
-  says "transfer takes no such option"
+  says "does not apply to transfer"
 done
 expect 2 haarview light.haar --frame picture.exr --level 14
 expect 2 haarview light.haar --frame picture.exr --rotate 10
 for option in "--rotate 1,2,3" "--light studio.hdr" "--scene scene.json"; do
   # shellcheck disable=SC2086
   expect 2 haarview brdf.haar --frame picture.exr $option
-  says "is of transfer"
+  says "applies to transfer"
 done
 expect 3 haarview light.haar --scene missing.json --frame picture.exr
 sed 's/"rotate": 20/"rotate": 21/' scene.json >other.json

@@ -125,14 +125,14 @@ half_written() { head -c 3000 other.haar >"$1"; }
 watched replaced reloaded
 same reloaded.png other.png
 prints '"reloads": 1'
-says "watched.haar was read again"
+says "watched.haar was reloaded"
 watched rewritten reloaded
 same reloaded.png other.png
 watched half_written kept
 same kept.png still.png
 prints '"refused_reloads": 1'
 says "watched.haar"
-says "the version before is kept"
+says "the previous version is kept"
 
 # shellcheck disable=SC2086
 leaves $inputs still.png turned.png again.png round.png other.png beside.png around.png frame.png frame_around.png \

@@ -1,6 +1,6 @@
 #include <bench/cache.h>
 
-#include <html/text_file.h>
+#include <html/page.h>
 #include <support/progress.h>
 #include <support/words.h>
 

@@ -1,4 +1,4 @@
-#include <info/error_curve.h>
+#include <info/page.h>
 
 #include <wavelet/base/parallel.h>
 
@@ -15,10 +15,10 @@ using wavelet::TreeSet;
 using wavelet::TreeView;
 
 constexpr unsigned mantissa_bits = 23;
-constexpr unsigned bin_shift = 17; ///< 64 bins for each doubling
+constexpr unsigned bin_shift = 17; ///< 64 bins per octave
 
-/// Energies by size. Those of a bin share their exponent, so that their sum is a sum of integers,
-/// the same in any order.
+/// Energies by size. All energies of a bin have the same exponent, so that their sum is a sum of
+/// integers, which does not depend on the order.
 class Histogram {
 public:
   /// @param energy finite, ≥ 0
@@ -39,7 +39,7 @@ public:
     }
   }
 
-  /// Bins, by rising energy.
+  /// Number of bins, ordered by increasing energy.
   std::size_t size() const { return m_bins.size(); }
   std::uint64_t count(std::size_t bin) const { return m_bins[bin].count; }
   double energy(std::size_t bin) const {
@@ -57,7 +57,7 @@ private:
 
 float weighted_square(Float4 c) { return wavelet::lane_sum(c * c * wavelet::luminance_lanes); }
 
-Histogram histogram_of(const TreeSet& set, MapPlace place) {
+Histogram energy_histogram(const TreeSet& set, MapPlace place) {
   const TreeView& tree = set.tree(place.column, place.row);
   Histogram histogram;
   std::uint32_t node = 0;
@@ -70,11 +70,11 @@ Histogram histogram_of(const TreeSet& set, MapPlace place) {
   return histogram;
 }
 
-Histogram histogram_of(const TreeSet& set, const std::vector<MapPlace>& trees) {
+Histogram energy_histogram(const TreeSet& set, const std::vector<MapPlace>& trees) {
   Histogram sum;
   std::mutex mutex;
   parallel_for(trees.size(), [&](std::size_t i) {
-    const Histogram one = histogram_of(set, trees[i]);
+    const Histogram one = energy_histogram(set, trees[i]);
     const std::scoped_lock lock(mutex);
     sum.add(one);
   });
@@ -89,16 +89,16 @@ double energy_of_means(const TreeSet& set, const std::vector<MapPlace>& trees) {
   return energy;
 }
 
-/// What is left at every bin if it and all above are kept, absolute; by falling error.
+/// Absolute squared error if a bin and all bins above it are kept, by decreasing error.
 std::vector<KeptPoint> all_points(const Histogram& histogram) {
   std::vector<KeptPoint> points;
-  double rest = 0;
+  double dropped = 0;
   std::uint64_t total = 0;
   for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
     if (histogram.count(bin) == 0)
       continue;
-    points.push_back({total, rest});
-    rest += histogram.energy(bin);
+    points.push_back({total, dropped});
+    dropped += histogram.energy(bin);
     total += histogram.count(bin);
   }
   for (KeptPoint& point : points)
@@ -110,7 +110,7 @@ std::vector<KeptPoint> all_points(const Histogram& histogram) {
 } // namespace
 
 std::vector<KeptPoint> error_curve(const TreeSet& set, const std::vector<MapPlace>& trees) {
-  const Histogram histogram = histogram_of(set, trees);
+  const Histogram histogram = energy_histogram(set, trees);
   double energy = energy_of_means(set, trees);
   for (std::size_t bin = 0; bin < histogram.size(); ++bin)
     energy += histogram.energy(bin);
