@@ -2,6 +2,7 @@
 // Shared by the fuzz targets: how an input becomes a file, and which outcomes are allowed.
 
 #include <wavelet/error.h>
+#include <wavelet/parallel.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -53,16 +54,26 @@ inline std::span<const std::byte> bytes_of(const std::uint8_t* data, std::size_t
   return std::as_bytes(std::span(data, size));
 }
 
-/// Runs a reader. It may succeed or throw Error(Input); anything else that it throws ends the
-/// fuzzer, which then keeps the input.
+/// Runs a reader in one thread. It may succeed or throw Error(Input); anything else that it throws
+/// ends the fuzzer, which then keeps the input.
 template <class F>
 void read_or_refuse(F&& read) {
+  static const ThreadLimit limit(1); // starting threads would take most of the time of an execution
   try {
     read();
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::Input)
       std::abort();
   }
+}
+
+/// Runs a reader of a path on an input. @return what LLVMFuzzerTestOneInput returns
+template <class F>
+int read_file(const std::uint8_t* data, std::size_t size, F&& read) {
+  static MemoryFile file;
+  file.assign(bytes_of(data, size));
+  read_or_refuse([&] { read(file.path()); });
+  return 0;
 }
 
 } // namespace haarlight::fuzzing
