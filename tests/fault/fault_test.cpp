@@ -85,6 +85,7 @@ const char* const scene = R"({"film": {"width": 32, "height": 32},
 struct Setup {
   std::map<std::string, std::string> environment;
   long file_size_limit = -1; ///< bytes; −1: none
+  bool must_fail = false;    ///< a program that meets the fault may not succeed
   int signal = 0;            ///< sent after `delay` seconds
   double delay = 0;
 };
@@ -186,7 +187,10 @@ public:
     if (setup.signal == SIGKILL)
       check_recovery(c, what);
     check_leftovers(c, what, outcome);
-    return fs::exists(m_root / "mark");
+    const bool injected = fs::exists(m_root / "mark");
+    if (injected && done && setup.must_fail)
+      fail(c, what, outcome, "ignores the failure");
+    return injected;
   }
 
 private:
@@ -344,20 +348,21 @@ void inject_faults(Runner& runner) {
   struct Call {
     const char* name;
     int error;
-    int most;             ///< calls that are tried
-    bool library = false; ///< graphics libraries call it
+    int most;               ///< calls that are tried
+    bool must_fail = false; ///< no program may ignore the failure
+    bool library = false;   ///< graphics libraries call it
   };
   const Call calls[] = {{"write", ENOSPC, 6},
-                        {"pwrite", ENOSPC, 12},
+                        {"pwrite", ENOSPC, 12, true},
                         {"pwrite", EINTR, 2},
-                        {"fsync", EIO, 4},
-                        {"rename", EACCES, 4},
-                        {"linkat", EACCES, 4},
+                        {"fsync", EIO, 4, true},
+                        {"rename", EACCES, 4, true},
+                        {"linkat", EACCES, 4, true},
                         {"ftruncate", EIO, 4},
-                        {"mmap", ENOMEM, 6, true},
-                        {"open", EMFILE, 8, true},
+                        {"mmap", ENOMEM, 6, false, true},
+                        {"open", EMFILE, 8, false, true},
                         {"mkostemp", EACCES, 3},
-                        {"pthread_create", EAGAIN, 3, true}};
+                        {"pthread_create", EAGAIN, 3, false, true}};
   std::map<std::string, int> injected;
   for (const Case& c : cases) {
     if (!runner.remember(c))
@@ -368,6 +373,7 @@ void inject_faults(Runner& runner) {
         setup.environment = {{"FAULT_CALL", call.name},
                              {"FAULT_INDEX", std::to_string(k)},
                              {"FAULT_ERROR", std::to_string(call.error)}};
+        setup.must_fail = call.must_fail && !c.graphics;
         const std::string what = std::string(call.name) + " " + std::to_string(k) + " fails by " +
                                  std::strerror(call.error);
         if (!runner.disturb(c, what, setup, k % 2 == 0))
@@ -415,7 +421,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: fault_test PROGRAM_FOLDER SHIM faults|signals|limits [CASE…]\n", stderr);
     return 2;
   }
-  Runner runner(argv[1], argv[2], Strings(argv + 4, argv + argc));
+  Runner runner(fs::absolute(argv[1]), fs::absolute(argv[2]), Strings(argv + 4, argv + argc));
   const std::string mode = argv[3];
   if (mode == "faults")
     inject_faults(runner);
