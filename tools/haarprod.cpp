@@ -3,10 +3,10 @@
 #include <support/tree_argument.h>
 #include <support/words.h>
 
-#include <wavelet/error.h>
-#include <wavelet/file_hash.h>
-#include <wavelet/multiply.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/file_hash.h>
+#include <wavelet/product/multiply.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 // Shared by the fuzz targets: how an input becomes a file, and which outcomes are allowed.
 
-#include <wavelet/error.h>
-#include <wavelet/parallel.h>
+#include <wavelet/base/error.h>
+#include <wavelet/base/parallel.h>
 
 #include <cstdint>
 #include <cstdio>

@@ -1,8 +1,8 @@
 // Portable float maps.
 #include "fuzz_target.h"
 
-#include <pfm_reader.h>
-#include <picture_format.h>
+#include <file/pfm_reader.h>
+#include <file/picture_format.h>
 
 using namespace haarlight;
 

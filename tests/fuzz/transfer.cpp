@@ -3,7 +3,7 @@
 #include "haar_mutator.h"
 #include "walk_trees.h"
 
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 #pragma once
 // Files that may be rewritten while they are shown.
 
-#include <wavelet/error.h>
-#include <wavelet/temporary_name.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/temporary_name.h>
 
 #include <cstdint>
 #include <list>
