@@ -32,7 +32,7 @@ struct Case {
   std::string name;
   Strings command;
   Strings outputs;
-  /// Outputs hold durations: they are complete if they have as many lines as without a fault.
+  /// Outputs hold durations: they are complete if they start and end as without a fault.
   bool timed = false;
   /// Complete files that a failed run may leave here, for the next one.
   std::string cache = "";
@@ -195,12 +195,15 @@ public:
 
 private:
   bool is_complete(const Case& c, const std::string& output, const std::string& bytes) {
-    const auto lines = [](const std::string& text) {
-      return std::count(text.begin(), text.end(), '\n');
-    };
     const std::string& wanted = m_wanted[output];
-    return c.timed ? lines(bytes) == lines(wanted) && bytes.back() == wanted.back()
-                   : bytes == wanted;
+    if (!c.timed)
+      return bytes == wanted;
+    // Axes and thus the number of lines go with the durations; the end of a file does not.
+    const auto last_line = [](const std::string& text) {
+      return text.substr(text.find_last_of('\n', text.size() - 2) + 1);
+    };
+    return bytes.size() > 2 && bytes.substr(0, 8) == wanted.substr(0, 8) &&
+           (last_line(bytes) == last_line(wanted) || output.ends_with(".csv"));
   }
 
   void clear() const {

@@ -37,9 +37,7 @@ TEST_CASE("Line ends, byte orders and scales of PFM", "[pfm]") {
       "PF\r\n1 2\r\n+1\r\n" + floats(column, true),
       "PF\n1 2\n-0.5\n" + floats({2, 4, 6, 8, 10, 12}),
       "PF\n1 2\n-8.507059173023462e+37\n" +
-          floats({0x1p-126F, 0x2p-126F, 0x3p-126F, 0x4p-126F, 0x5p-126F, 0x6p-126F}),
-      "PF\n1 2\n-1.3684555315672042e-48\n" +
-          floats({0x1p126F, 0x1p127F, 0x1p126F, 0x1p127F, 0x1p126F, 0x1p127F})};
+          floats({0x1p-126F, 0x2p-126F, 0x3p-126F, 0x4p-126F, 0x5p-126F, 0x6p-126F})};
   for (const std::string& bytes : files) {
     const auto loaded = read_image(folder.write("a.hdr", bytes));
     INFO(bytes.substr(0, 20));
