@@ -72,4 +72,12 @@ std::vector<PixelPlace> find_peaks(const Probe& probe) {
   return all;
 }
 
+float radiance_unit(const Probe& probe) {
+  float largest = 0;
+  for (int y = 0; y < probe.height(); ++y)
+    for (int x = 0; x < probe.width(); ++x)
+      largest = std::max(largest, probe.pixel(x, y).maxCoeff());
+  return largest > 0x1p96F ? 0x1p32F : 1.0F;
+}
+
 } // namespace haarlight::probe

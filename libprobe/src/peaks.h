@@ -17,4 +17,8 @@ struct PixelPlace {
 /// or two pixels and the corners of wider ones.
 std::vector<PixelPlace> find_peaks(const Probe& probe);
 
+/// A power of two by which the probe's radiances are divided so that sums of samples stay finite; 1
+/// for all but extreme ones.
+float radiance_unit(const Probe& probe);
+
 } // namespace haarlight::probe
