@@ -15,10 +15,11 @@
 namespace haarlight::probe {
 namespace {
 
-/// Of the outlines of peaks in tables, which are averaged over at least 16 frames: a fifteenth of
-/// the time of the default, at differences below 0.0005 of the norm (measured with probes of 8 and
-/// 31 pixels).
+/// Of the outlines of peaks in one frame, and in those of a table, at least 16 for each map. Maps
+/// differ from those of the default flatness by less than 0.0002 of their norm, in a tenth of the
+/// time (probes of 8 and 31 pixels, grace).
 constexpr Flatness flatness_of_turns = {0.02F};
+constexpr Flatness flatness_of_tables = {0.15F};
 
 /// Samples of a map in one frame, about 3 ms, where that is between 8² and 32² for each pixel.
 constexpr int samples_of_turn = 1 << 20;
@@ -165,12 +166,13 @@ private:
 };
 
 /// Adds the level's peaks as they lie in each frame.
-AreaSum peaks_in(const WorldLevel& level, int size, std::span<const SampleFrame> frames) {
+AreaSum peaks_in(const WorldLevel& level, int size, std::span<const SampleFrame> frames,
+                 Flatness flatness) {
   AreaSum peaks(size);
   const PictureShape shape = {Mapping::Octahedral, level.size, level.size};
   if (!level.peaks.empty())
     for (const SampleFrame& sample : frames)
-      peaks.add(PixelCoverage(shape, size, sample.frame, flatness_of_turns), level.peaks);
+      peaks.add(PixelCoverage(shape, size, sample.frame, flatness), level.peaks);
   return peaks;
 }
 
@@ -201,7 +203,7 @@ int matching_level_size(const MapOptions& options, int full_size) {
 wavelet::Map rotated_map(const WorldLevel& level, const MapOptions& options, int column, int row) {
   wavelet::Map map(options.size);
   const std::vector<SampleFrame> frames = frames_of_cell(options, column, row);
-  const AreaSum peaks = peaks_in(level, map.size, frames);
+  const AreaSum peaks = peaks_in(level, map.size, frames, flatness_of_tables);
   RowSampler<Lookup::Bilinear> sampler(level, map.size, frames);
   for (int y = 0; y < map.size; ++y)
     make_row(map, y, level, sampler, peaks, frames.size());
@@ -214,7 +216,7 @@ wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size) {
   wavelet::Map map(size);
   const int along = std::max(2 * ((level.size + size - 1) / size), turn_samples_along(size));
   const std::vector<SampleFrame> frames = frames_of_turn(frame, along * along);
-  const AreaSum peaks = peaks_in(level, size, std::span(frames).first(1));
+  const AreaSum peaks = peaks_in(level, size, std::span(frames).first(1), flatness_of_turns);
   parallel_ranges(static_cast<std::size_t>(size), 4, [&](std::size_t begin, std::size_t end) {
     RowSampler<Lookup::Nearest> sampler(level, size, frames);
     for (std::size_t y = begin; y < end; ++y)

@@ -214,9 +214,7 @@ TEST_CASE("Maps agree with the nearest look-up and are nowhere brighter than it"
       INFO(mapping_name(mapping) << " " << size);
       CHECK(difference < 0.012F);
       CHECK(largest(map.rgb) <= largest(image.rgb) * 1.00001F);
-      // The quadrature of integral() is coarse where the rim crosses every pixel.
-      CHECK(map_integral(map) ==
-            Approx(luminance(probe.integral())).epsilon(size < 8 ? 0.02 : 0.003));
+      CHECK(map_integral(map) == Approx(luminance(probe.integral())).epsilon(1e-3));
     }
 }
 
@@ -317,8 +315,8 @@ TEST_CASE("Every rotated map keeps the energy of a small sun", "[maps]") {
           worst = std::max(worst, std::abs(part / truth - 1));
         }
       INFO(size << " " << orientations << " worst " << worst);
-      CHECK(sum == Approx(truth).epsilon(0.01));
-      CHECK(worst < 0.02F);
+      CHECK(sum == Approx(truth).epsilon(0.002));
+      CHECK(worst < 0.003F);
     }
 }
 
@@ -388,7 +386,7 @@ constexpr float rounding = 2e-5F;
 TEST_CASE("Rotated maps are never brighter than the probe, and keep its integral", "[maps]") {
   std::mt19937 random(61);
   std::uniform_real_distribution<float> uniform(-1, 1);
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < 12; ++i) {
     const Probe probe = random_probe(random);
     const wavelet::Map world = world_map(probe, 32, 1);
     const float most = brightest(probe) * (1 + rounding);
@@ -440,18 +438,18 @@ TEST_CASE("Rotated maps of constant probes are constant", "[maps]") {
 TEST_CASE("Rotated maps agree with the nearest look-up", "[maps]") {
   const Frame turn = turned_by(0.7F, Vec3(0.3F, -0.5F, 0.8F));
   for (const Mapping mapping : all_mappings)
-    for (const int size : {1, 2, 8}) {
+    for (const int size : {1, 8}) {
       const Probe probe(spotted(mapping, size), mapping);
-      const wavelet::Map turned = turned_map(turning_level(world_map(probe, 128, 4)), turn, 16);
+      const wavelet::Map turned = turned_map(turning_level(world_map(probe, 64, 4)), turn, 16);
       const wavelet::Map cell = ProbeMaps(probe, {16, 4, 8}).make(2, 1);
       INFO(mapping_name(mapping) << " " << size);
       CHECK(relative_l2(turned, looked_up_in(probe, 16, 400, [&](const Vec2&) { return turn; })) <
-            0.02F);
-      CHECK(relative_l2(cell, looked_up_in(probe, 16, 1000, [&](const Vec2& in_cell) {
+            0.04F);
+      CHECK(relative_l2(cell, looked_up_in(probe, 16, 600, [&](const Vec2& in_cell) {
                           return carried_frame(
                               light_frame(2, 1, 4),
                               wavelet::square_to_sphere((Vec2(2, 1) + in_cell) / 4));
-                        })) < 0.03F);
+                        })) < 0.08F);
     }
 }
 
