@@ -30,3 +30,7 @@ endif()
 option(HAARLIGHT_PRECOMPILE "Precompile the headers that nearly every source includes" ON)
 set(HAARLIGHT_COMMON_HEADERS <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <functional> <memory>
     <optional> <span> <string> <vector>)
+
+# Sources of a library are compiled several at a time: the other half of a cold build. Names in unnamed namespaces are
+# unique within a library therefore.
+option(HAARLIGHT_UNITY "Compile the sources of a library in batches" ON)

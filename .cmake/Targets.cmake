@@ -9,6 +9,13 @@ function(haarlight_precompile target)
   endif()
 endfunction()
 
+# haarlight_unity(TARGET): compiles the sources of a target in batches.
+function(haarlight_unity target)
+  if(HAARLIGHT_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
 # haarlight_library(NAME FOLDER SOURCES … HEADERS … PUBLIC … PRIVATE …)
 # One installed static library haarlight::NAME whose public headers live in FOLDER/include/NAME.
 function(haarlight_library name)
@@ -22,6 +29,9 @@ function(haarlight_library name)
   target_link_libraries(haarlight_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE}
                         $<BUILD_INTERFACE:haarlight_settings>)
   haarlight_precompile(haarlight_${name})
+  if(NOT name STREQUAL brdf)
+    haarlight_unity(haarlight_${name})
+  endif()
   install(TARGETS haarlight_${name} EXPORT haarlightTargets FILE_SET HEADERS)
 endfunction()
 
@@ -40,4 +50,7 @@ function(haarlight_tool_library name)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/tools)
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} haarlight::wavelet PRIVATE ${arg_PRIVATE} haarlight_settings)
   haarlight_precompile(${name})
+  if(NOT name STREQUAL haarlight_view)
+    haarlight_unity(${name})
+  endif()
 endfunction()

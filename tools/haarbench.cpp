@@ -11,7 +11,7 @@
 #include <support/program.h>
 #include <support/progress.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <filesystem>
 #include <string>

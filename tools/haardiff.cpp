@@ -7,8 +7,8 @@
 #include <support/progress.h>
 #include <support/words.h>
 
-#include <wavelet/compare.h>
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/tree/compare.h>
 
 using namespace haarlight;
 using wavelet::MapPlace;

@@ -9,8 +9,8 @@
 #include <image/image_exr.h>
 #include <image/png.h>
 
-#include <wavelet/error.h>
-#include <wavelet/packed_set.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/packed_set.h>
 
 using namespace haarlight;
 

@@ -3,9 +3,9 @@
 #include <support/tree_argument.h>
 #include <support/words.h>
 
-#include <wavelet/file_hash.h>
-#include <wavelet/multiply.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/file/file_hash.h>
+#include <wavelet/product/multiply.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 

@@ -6,10 +6,10 @@
 #include <support/program.h>
 #include <support/progress.h>
 
-#include <renderer/render.h>
-#include <renderer/scene_file.h>
-#include <wavelet/out_of_memory.h>
-#include <wavelet/output_file.h>
+#include <renderer/film/render.h>
+#include <renderer/scene/scene_file.h>
+#include <wavelet/base/out_of_memory.h>
+#include <wavelet/file/output_file.h>
 
 using namespace haarlight;
 using namespace haarlight::renderer;

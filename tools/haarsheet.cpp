@@ -6,8 +6,8 @@
 #include <image/image_exr.h>
 #include <image/png.h>
 
-#include <wavelet/error.h>
-#include <wavelet/input_file.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/input_file.h>
 
 #include <cmath>
 #include <numeric>

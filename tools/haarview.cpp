@@ -10,13 +10,13 @@
 #include <view/view_options.h>
 #include <view/window_run.h>
 
-#include <renderer/light.h>
-#include <wavelet/file_hash.h>
-#include <wavelet/input_file.h>
-#include <wavelet/output_file.h>
-#include <wavelet/parallel.h>
-#include <wavelet/provenance.h>
-#include <wavelet/tree_set.h>
+#include <renderer/light/light.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/file/file_hash.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/output_file.h>
+#include <wavelet/file/provenance.h>
+#include <wavelet/file/tree_set.h>
 
 #include <cstdlib>
 

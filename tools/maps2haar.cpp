@@ -7,8 +7,8 @@
 
 #include <image/map_set_exr.h>
 
-#include <wavelet/error.h>
-#include <wavelet/packed_set.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/packed_set.h>
 
 using namespace haarlight;
 

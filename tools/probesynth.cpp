@@ -6,8 +6,8 @@
 #include <probe/rgbe.h>
 #include <probe/synth.h>
 
-#include <wavelet/provenance.h>
-#include <wavelet/trigonometry.h>
+#include <wavelet/base/trigonometry.h>
+#include <wavelet/file/provenance.h>
 
 using namespace haarlight;
 

@@ -1,6 +1,6 @@
 #include "encoding.h"
 
-#include "elementary.h"
+#include "mapping/elementary.h"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #pragma once
 // How stored sample values become linear Rec. 709 colours.
 
-#include "colour_space.h"
+#include "file/colour_space.h"
 #include "picture.h"
 
 #include <functional>

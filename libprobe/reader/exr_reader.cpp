@@ -1,7 +1,7 @@
 // OpenEXR files: the colours of one layer, placed in the display window.
 
-#include "colour_space.h"
 #include "exr_channels.h"
+#include "file/colour_space.h"
 #include "picture.h"
 
 #include <OpenEXR/Iex.h>

@@ -2,7 +2,7 @@
 
 #include "encoding.h"
 
-#include "elementary.h"
+#include "mapping/elementary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include "picture.h"
 
-#include "picture_format.h"
-#include "reader_protocol.h"
+#include "file/picture_format.h"
+#include "file/reader_protocol.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -6,7 +6,7 @@
 #include <brdf/directional_albedo.h>
 #include <brdf/tabulate.h>
 
-#include <wavelet/sphere_map.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <string>
 

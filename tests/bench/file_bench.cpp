@@ -1,7 +1,7 @@
 // Opening .haar files, and packing and unpacking them.
 // Usage: file_bench FILE.haar [options of the benchmark library]
-#include <wavelet/compress.h>
-#include <wavelet/packed_set.h>
+#include <wavelet/file/packed_set.h>
+#include <wavelet/transform/compress.h>
 
 #include <benchmark/benchmark.h>
 

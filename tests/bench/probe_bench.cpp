@@ -7,8 +7,8 @@
 #include <probe/read_probe.h>
 #include <probe/synth.h>
 
-#include <wavelet/parallel.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <cstdio>
 #include <ctime>

@@ -1,10 +1,10 @@
 // Products and their sampling. Rivals in the same run: the dense way, multiplying two 512² maps and
 // building the mip pyramid that a descent needs, and sampling such a pyramid.
 
-#include <wavelet/adaptive_product.h>
-#include <wavelet/compress.h>
-#include <wavelet/sphere_map.h>
-#include <wavelet/synchronous_product.h>
+#include <wavelet/product/adaptive_product.h>
+#include <wavelet/product/synchronous_product.h>
+#include <wavelet/square/sphere_map.h>
+#include <wavelet/transform/compress.h>
 
 #include <benchmark/benchmark.h>
 

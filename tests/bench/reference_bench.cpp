@@ -1,19 +1,19 @@
-// The published product on hash tables (<wavelet/reference.h>), beside two rivals in the same run:
-// the synchronous product that the toolkit uses, and the dense way, multiplying RGB images pixel by
-// pixel and averaging all the way up, in loops that the compiler vectorises. All three multiply the
-// same two trees, all three channels, and must agree on the integral. Images and coefficient sets
-// are made beforehand.
+// The published product on hash tables (<wavelet/reference/reference.h>), beside two rivals in the
+// same run: the synchronous product that the toolkit uses, and the dense way, multiplying RGB
+// images pixel by pixel and averaging all the way up, in loops that the compiler vectorises. All
+// three multiply the same two trees, all three channels, and must agree on the integral. Images and
+// coefficient sets are made beforehand.
 //
 // Usage: reference_bench [options of Google Benchmark] [BRDF.haar LIGHT.haar]
 // The files may also be named by HAARLIGHT_BENCH_BRDF and HAARLIGHT_BENCH_LIGHT; without any the
 // trees are synthetic. Ends with each way's time relative to the dense one's, best of all
 // repetitions: ask for --benchmark_repetitions=N --benchmark_enable_random_interleaving=true.
 
-#include <wavelet/compress.h>
-#include <wavelet/reference.h>
-#include <wavelet/sphere_map.h>
-#include <wavelet/synchronous_product.h>
-#include <wavelet/tree_set.h>
+#include <wavelet/file/tree_set.h>
+#include <wavelet/product/synchronous_product.h>
+#include <wavelet/reference/reference.h>
+#include <wavelet/square/sphere_map.h>
+#include <wavelet/transform/compress.h>
 
 #include <benchmark/benchmark.h>
 

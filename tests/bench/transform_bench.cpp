@@ -3,7 +3,7 @@
 // the machine does falls away; the ratios are of those.
 // transform_pywavelets.py sets PyWavelets' times beside these.
 
-#include <wavelet/transform.h>
+#include <wavelet/transform/transform.h>
 
 #include <benchmark/benchmark.h>
 

@@ -1,9 +1,9 @@
 // One call into each installed library.
 #include <brdf/analytic.h>
 #include <probe/mapping.h>
-#include <renderer/scene_file.h>
-#include <wavelet/error.h>
-#include <wavelet/sphere_map.h>
+#include <renderer/scene/scene_file.h>
+#include <wavelet/base/error.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <cmath>
 #include <cstdio>

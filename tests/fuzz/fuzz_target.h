@@ -1,7 +1,7 @@
 #pragma once
 // Shared by the fuzz targets: how an input becomes a file, and which outcomes are allowed.
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <cstdint>
 #include <cstdlib>

@@ -5,8 +5,8 @@
 #include <set_layout.h>
 #include <tree_block.h>
 
-#include <wavelet/error.h>
-#include <wavelet/input_file.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/input_file.h>
 
 #include <zstd.h>
 

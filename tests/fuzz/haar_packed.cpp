@@ -3,8 +3,8 @@
 #include "haar_mutator.h"
 #include "walk_trees.h"
 
-#include <wavelet/packed_set.h>
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/file/packed_set.h>
 
 using namespace haarlight;
 

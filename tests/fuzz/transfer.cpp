@@ -3,9 +3,9 @@
 #include "haar_mutator.h"
 #include "walk_trees.h"
 
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 using namespace haarlight;
 

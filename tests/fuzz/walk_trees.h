@@ -1,7 +1,7 @@
 #pragma once
 // Uses the trees of a set the way programs do, so that a bad link that was accepted is followed.
 
-#include <wavelet/tree_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <algorithm>
 

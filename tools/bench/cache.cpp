@@ -7,8 +7,8 @@
 #include <brdf/brdf_maps.h>
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
-#include <wavelet/compress.h>
-#include <wavelet/file_hash.h>
+#include <wavelet/file/file_hash.h>
+#include <wavelet/transform/compress.h>
 
 #include <nlohmann/json.hpp>
 

@@ -3,9 +3,9 @@
 
 #include <support/tool.h>
 
-#include <renderer/sampler_kind.h>
-#include <wavelet/map_set.h>
-#include <wavelet/threshold.h>
+#include <renderer/samplers/sampler_kind.h>
+#include <wavelet/transform/threshold.h>
+#include <wavelet/tree/map_set.h>
 
 #include <functional>
 #include <memory>

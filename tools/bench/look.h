@@ -3,7 +3,7 @@
 
 #include <html/look.h>
 
-#include <renderer/sampler_kind.h>
+#include <renderer/samplers/sampler_kind.h>
 
 #include <string>
 

@@ -6,7 +6,7 @@
 
 #include <render/film_output.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <map>
 

@@ -6,7 +6,7 @@
 #include <html/frame.h>
 #include <html/text.h>
 
-#include <wavelet/provenance.h>
+#include <wavelet/file/provenance.h>
 
 namespace haarlight::bench {
 

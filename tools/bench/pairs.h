@@ -4,7 +4,7 @@
 #include <bench/cache.h>
 #include <bench/plan.h>
 
-#include <renderer/scene.h>
+#include <renderer/scene/scene.h>
 
 #include <map>
 #include <string>

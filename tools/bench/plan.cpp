@@ -2,7 +2,7 @@
 
 #include <support/words.h>
 
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
 
 #include <algorithm>
 #include <numeric>

@@ -4,7 +4,7 @@
 #include <bench/cache.h>
 #include <support/tool.h>
 
-#include <renderer/render.h>
+#include <renderer/film/render.h>
 
 #include <cstdint>
 #include <string>

@@ -2,8 +2,8 @@
 
 #include <bench/plan.h>
 
-#include <renderer/scene_file.h>
-#include <wavelet/error.h>
+#include <renderer/scene/scene_file.h>
+#include <wavelet/base/error.h>
 
 namespace haarlight::bench {
 

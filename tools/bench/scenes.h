@@ -1,7 +1,7 @@
 #pragma once
 // What the pairs are rendered on.
 
-#include <renderer/scene.h>
+#include <renderer/scene/scene.h>
 
 #include <string>
 

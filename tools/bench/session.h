@@ -6,7 +6,7 @@
 #include <bench/statistics.h>
 
 #include <image/image.h>
-#include <renderer/render.h>
+#include <renderer/film/render.h>
 
 #include <memory>
 #include <vector>

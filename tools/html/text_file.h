@@ -1,7 +1,7 @@
 #pragma once
 // Small files written whole or not at all.
 
-#include <wavelet/output_file.h>
+#include <wavelet/file/output_file.h>
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include <image/exr_chunks.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <OpenEXR/ImfChannelList.h>
 

@@ -2,7 +2,7 @@
 // The chunks (blocks of scanlines, or tiles) of an EXR file.
 // For the sources of this folder only: it shows OpenEXR's headers.
 
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
 
 #include <OpenEXR/ImfHeader.h>
 

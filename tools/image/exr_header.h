@@ -3,7 +3,7 @@
 // memory on damaged files.
 // For the sources of this folder only: it shows OpenEXR's headers.
 
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
 
 #include <OpenEXR/ImfHeader.h>
 

@@ -3,7 +3,7 @@
 #include <image/exr_header.h>
 #include <image/map_set_attributes.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <bit>
 #include <cstdint>

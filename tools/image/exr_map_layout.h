@@ -4,8 +4,8 @@
 
 #include <image/exr_pixels.h>
 
-#include <wavelet/input_file.h>
-#include <wavelet/map_set.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/tree/map_set.h>
 
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>

@@ -3,7 +3,7 @@
 #include <image/exr_map_layout.h>
 #include <image/exr_stream.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <OpenEXR/ImfTiledInputFile.h>
 

@@ -4,7 +4,7 @@
 
 #include <image/image.h>
 
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
 
 #include <OpenEXR/ImfHeader.h>
 

@@ -1,6 +1,6 @@
 #include <image/exr_stream.h>
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfTestFile.h>

@@ -2,9 +2,9 @@
 // OpenEXR's streams over the toolkit's files.
 // For the sources of this folder only: it shows OpenEXR's headers.
 
-#include <wavelet/error.h>
-#include <wavelet/input_file.h>
-#include <wavelet/output_file.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/output_file.h>
 
 #include <OpenEXR/ImfIO.h>
 

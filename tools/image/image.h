@@ -1,7 +1,7 @@
 #pragma once
 // A picture in memory: what the picture writers and readers exchange.
 
-#include <wavelet/geometry.h>
+#include <wavelet/base/geometry.h>
 
 #include <cstddef>
 #include <vector>

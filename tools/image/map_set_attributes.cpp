@@ -1,6 +1,6 @@
 #include <image/map_set_attributes.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>

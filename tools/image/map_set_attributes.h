@@ -2,7 +2,7 @@
 // A set's SetInfo as EXR header attributes, and back.
 // For the sources of this folder only: it shows OpenEXR's headers.
 
-#include <wavelet/map_set.h>
+#include <wavelet/tree/map_set.h>
 
 #include <OpenEXR/ImfHeader.h>
 

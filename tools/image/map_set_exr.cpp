@@ -3,9 +3,9 @@
 #include <image/exr_stream.h>
 #include <image/map_set_attributes.h>
 
-#include <wavelet/error.h>
-#include <wavelet/out_of_memory.h>
-#include <wavelet/parallel.h>
+#include <wavelet/base/error.h>
+#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/parallel.h>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>

@@ -3,8 +3,8 @@
 // table and any map can be read alone. Float R, G, B, ZIP. Header attributes haarlight:* hold every
 // field of SetInfo.
 
-#include <wavelet/map_set.h>
-#include <wavelet/output_file.h>
+#include <wavelet/file/output_file.h>
+#include <wavelet/tree/map_set.h>
 
 #include <cstdint>
 #include <memory>

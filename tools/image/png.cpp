@@ -1,8 +1,8 @@
 #include <image/png.h>
 
-#include <wavelet/error.h>
-#include <wavelet/input_file.h>
-#include <wavelet/output_file.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/output_file.h>
 
 #include <png.h>
 

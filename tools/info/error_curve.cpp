@@ -1,6 +1,6 @@
 #include <info/error_curve.h>
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 #pragma once
 // How far trees would lie from what they are if fewer of their coefficients were kept.
 
-#include <wavelet/tree_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <cstdint>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include <support/inspect.h>
 
-#include <wavelet/tree_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <optional>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 // The part of the page that looks at the lobes of a BRDF set.
 
-#include <wavelet/tree_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #include <info/lobes.h>
 
-#include <wavelet/sphere_map.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // Lobes of a BRDF set along lines through the mirror direction.
 
-#include <wavelet/tree_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <utility>
 #include <vector>

@@ -8,8 +8,8 @@
 #include <html/frame.h>
 #include <html/text.h>
 
-#include <wavelet/input_file.h>
-#include <wavelet/provenance.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/provenance.h>
 
 namespace haarlight::info {
 namespace {

@@ -4,7 +4,7 @@
 #include <support/compare_input.h>
 #include <support/inspect.h>
 
-#include <wavelet/tree_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <optional>
 #include <string>

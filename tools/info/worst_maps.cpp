@@ -6,9 +6,9 @@
 
 #include <support/compare_picture.h>
 
-#include <wavelet/compare.h>
-#include <wavelet/input_file.h>
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/tree/compare.h>
 
 #include <algorithm>
 #include <cmath>

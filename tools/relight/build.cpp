@@ -4,9 +4,9 @@
 #include <support/output_size.h>
 #include <support/progress.h>
 
-#include <renderer/scene_file.h>
-#include <renderer/transfer.h>
-#include <wavelet/packed_set.h>
+#include <renderer/scene/scene_file.h>
+#include <renderer/transfer/transfer.h>
+#include <wavelet/file/packed_set.h>
 
 #include <bit>
 #include <chrono>

@@ -5,10 +5,10 @@
 
 #include <image/image_exr.h>
 
-#include <renderer/scene_file.h>
-#include <wavelet/error.h>
-#include <wavelet/file_hash.h>
-#include <wavelet/input_file.h>
+#include <renderer/scene/scene_file.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/file_hash.h>
+#include <wavelet/file/input_file.h>
 
 namespace haarlight::tool {
 

@@ -3,7 +3,7 @@
 
 #include <support/tool.h>
 
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
 #include <string>
 #include <vector>

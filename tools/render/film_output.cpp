@@ -6,8 +6,8 @@
 #include <image/image_exr.h>
 #include <image/png.h>
 
-#include <wavelet/file_hash.h>
-#include <wavelet/input_file.h>
+#include <wavelet/file/file_hash.h>
+#include <wavelet/file/input_file.h>
 
 #include <algorithm>
 #include <charconv>

@@ -1,9 +1,9 @@
 #pragma once
 // What haarrender says and writes of a rendering.
 
-#include <renderer/render.h>
+#include <renderer/film/render.h>
 #include <support/tool.h>
-#include <wavelet/provenance.h>
+#include <wavelet/file/provenance.h>
 
 #include <string>
 #include <utility>

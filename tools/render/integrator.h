@@ -1,8 +1,8 @@
 #pragma once
 // Which light haarrender follows, and what each way of doing so may be told.
 
-#include <renderer/path.h>
-#include <renderer/product_integral.h>
+#include <renderer/path/path.h>
+#include <renderer/visibility/product_integral.h>
 #include <support/tool.h>
 
 #include <string>

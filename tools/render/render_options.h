@@ -1,7 +1,7 @@
 #pragma once
 // The command line of haarrender, as far as it says how a scene is rendered.
 
-#include <renderer/render.h>
+#include <renderer/film/render.h>
 #include <support/tool.h>
 
 namespace haarlight::tool {

@@ -3,7 +3,7 @@
 
 #include <support/tool.h>
 
-#include <wavelet/compare.h>
+#include <wavelet/tree/compare.h>
 
 #include <optional>
 #include <string>

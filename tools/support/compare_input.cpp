@@ -5,9 +5,9 @@
 
 #include <image/map_set_exr.h>
 
-#include <wavelet/error.h>
-#include <wavelet/input_file.h>
-#include <wavelet/packed_set.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/packed_set.h>
 
 #include <cstring>
 

@@ -3,7 +3,7 @@
 
 #include <image/contact_sheet.h>
 
-#include <wavelet/map_set.h>
+#include <wavelet/tree/map_set.h>
 
 #include <string>
 #include <vector>

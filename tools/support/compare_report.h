@@ -4,7 +4,7 @@
 #include <support/compare_input.h>
 #include <support/report.h>
 
-#include <wavelet/compare.h>
+#include <wavelet/tree/compare.h>
 
 namespace haarlight::tool {
 

@@ -2,7 +2,7 @@
 
 #include <support/tool.h>
 
-#include <wavelet/output_file.h>
+#include <wavelet/file/output_file.h>
 
 #include <sys/stat.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 
 #include <support/words.h>
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 
 #include <image/image.h>
 
-#include <wavelet/packed_set.h>
-#include <wavelet/tree_set.h>
+#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <cstdint>
 #include <functional>

@@ -1,6 +1,6 @@
 #include <support/inspect.h>
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 #include <algorithm>
 

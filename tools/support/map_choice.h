@@ -1,7 +1,7 @@
 #pragma once
 // One map of a set, as --tree names it.
 
-#include <wavelet/map_set.h>
+#include <wavelet/tree/map_set.h>
 
 #include <string>
 #include <vector>

@@ -7,7 +7,7 @@
 
 #include <image/map_set_exr.h>
 
-#include <wavelet/output_file.h>
+#include <wavelet/file/output_file.h>
 
 #include <cmath>
 

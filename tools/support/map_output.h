@@ -3,8 +3,8 @@
 
 #include <support/tool.h>
 
-#include <wavelet/compress.h>
-#include <wavelet/map_set.h>
+#include <wavelet/transform/compress.h>
+#include <wavelet/tree/map_set.h>
 
 #include <optional>
 #include <string>

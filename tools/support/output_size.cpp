@@ -2,9 +2,9 @@
 
 #include <support/words.h>
 
-#include <wavelet/available_memory.h>
-#include <wavelet/error.h>
-#include <wavelet/parallel.h>
+#include <wavelet/base/available_memory.h>
+#include <wavelet/base/error.h>
+#include <wavelet/base/parallel.h>
 
 #include <algorithm>
 #include <filesystem>

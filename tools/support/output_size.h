@@ -3,7 +3,7 @@
 
 #include <support/tool.h>
 
-#include <wavelet/map_set.h>
+#include <wavelet/tree/map_set.h>
 
 #include <cstdint>
 #include <string>

@@ -2,8 +2,8 @@
 
 #include <support/tool.h>
 
-#include <wavelet/out_of_memory.h>
-#include <wavelet/temporary_name.h>
+#include <wavelet/base/out_of_memory.h>
+#include <wavelet/file/temporary_name.h>
 
 #include <cerrno>
 #include <csignal>

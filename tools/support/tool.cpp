@@ -1,7 +1,7 @@
 #include <support/tool.h>
 
-#include <wavelet/output_file.h>
-#include <wavelet/provenance.h>
+#include <wavelet/file/output_file.h>
+#include <wavelet/file/provenance.h>
 
 #include <CLI/CLI.hpp>
 

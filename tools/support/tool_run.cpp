@@ -2,9 +2,9 @@
 #include <support/process.h>
 #include <support/tool.h>
 
-#include <wavelet/error.h>
-#include <wavelet/out_of_memory.h>
-#include <wavelet/parallel.h>
+#include <wavelet/base/error.h>
+#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/parallel.h>
 
 #include <algorithm>
 #include <cerrno>

@@ -3,7 +3,7 @@
 #include <support/map_choice.h>
 #include <support/words.h>
 
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
 
 #include <map>
 

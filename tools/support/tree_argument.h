@@ -1,7 +1,7 @@
 #pragma once
 // Trees named on a command line as PATH[column,row].
 
-#include <wavelet/tree_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <memory>
 #include <string>

@@ -2,7 +2,7 @@
 
 #include <image/image_exr.h>
 #include <view/cpu_frame.h>
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 #include <view/cpu_frame.h>
 
-#include <renderer/product_integral.h>
-#include <wavelet/parallel.h>
+#include <renderer/visibility/product_integral.h>
+#include <wavelet/base/parallel.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <view/egl_context.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>

@@ -1,6 +1,6 @@
 #include <view/gl_objects.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <epoxy/gl.h>
 

@@ -1,7 +1,7 @@
 #include <view/packed_light.h>
 
-#include <wavelet/half.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/base/half.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // A distant light as arrays of texels: its averages over the squares of all levels. No GL here.
 
-#include <wavelet/map_set.h>
+#include <wavelet/tree/map_set.h>
 
 #include <cstdint>
 #include <vector>

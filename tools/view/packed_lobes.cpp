@@ -1,7 +1,7 @@
 #include <view/packed_lobes.h>
 
-#include <wavelet/half.h>
-#include <wavelet/pyramid.h>
+#include <wavelet/base/half.h>
+#include <wavelet/tree/pyramid.h>
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 // before. Levels lie below each other, all with one more texel around them, from across the
 // octahedral seams where the square ends.
 
-#include <wavelet/tree.h>
+#include <wavelet/tree/tree.h>
 
 #include <cstdint>
 #include <span>

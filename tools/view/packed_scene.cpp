@@ -3,7 +3,7 @@
 #include <view/packed_lobes.h>
 #include <view/packed_trees.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <algorithm>
 #include <cstring>

@@ -5,7 +5,7 @@
 // are dense, so that the texture unit can filter between neighbouring columns; below them nodes are
 // found by links, as in a .haar file. trees.glsl reads what is made here.
 
-#include <wavelet/tree.h>
+#include <wavelet/tree/tree.h>
 
 #include <cstdint>
 #include <span>

@@ -10,8 +10,8 @@
 #include <view/transfer_window.h>
 #include <view/window_run.h>
 
-#include <wavelet/error.h>
-#include <wavelet/packed_set.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/packed_set.h>
 
 #include <algorithm>
 #include <bit>

@@ -2,7 +2,7 @@
 
 #include <view/transfer_packing.h>
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 namespace haarlight::view {
 

@@ -3,8 +3,8 @@
 
 #include <view/packed_scene.h>
 
-#include <renderer/relight.h>
-#include <renderer/turned_light.h>
+#include <renderer/transfer/relight.h>
+#include <renderer/transfer/turned_light.h>
 
 #include <vector>
 

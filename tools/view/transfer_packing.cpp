@@ -1,6 +1,6 @@
 #include <view/transfer_packing.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <view/transfer_packing.h>
 #include <view/window_screen.h>
 
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
 
 #include <imgui.h>
 

@@ -3,7 +3,7 @@
 
 #include <view/window.h>
 
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
 #include <array>
 

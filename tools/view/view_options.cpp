@@ -2,7 +2,7 @@
 
 #include <support/words.h>
 
-#include <wavelet/output_file.h>
+#include <wavelet/file/output_file.h>
 
 namespace haarlight::view {
 namespace {

@@ -1,8 +1,8 @@
 #include <view/view_scene.h>
 
-#include <renderer/scene_file.h>
-#include <wavelet/error.h>
-#include <wavelet/input_file.h>
+#include <renderer/scene/scene_file.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/input_file.h>
 
 namespace haarlight::view {
 

@@ -1,10 +1,10 @@
 #pragma once
 // What a viewer shows: spheres and planes, their trees and one lamp. No GL here.
 
-#include <renderer/camera.h>
-#include <renderer/reflectance.h>
-#include <renderer/scene.h>
-#include <renderer/shapes.h>
+#include <renderer/material/reflectance.h>
+#include <renderer/scene/camera.h>
+#include <renderer/scene/scene.h>
+#include <renderer/shapes/shapes.h>
 
 #include <algorithm>
 #include <string>

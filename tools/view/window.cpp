@@ -5,8 +5,8 @@
 #include <view/window_screen.h>
 #include <view/window_steering.h>
 
-#include <wavelet/error.h>
-#include <wavelet/input_file.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/input_file.h>
 
 #include <algorithm>
 #include <chrono>

@@ -2,9 +2,9 @@
 
 #include <view/window_light.h>
 
-#include <wavelet/error.h>
-#include <wavelet/input_file.h>
-#include <wavelet/tree_set.h>
+#include <wavelet/base/error.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/tree_set.h>
 
 #include <algorithm>
 #include <filesystem>

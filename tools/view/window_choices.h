@@ -5,7 +5,7 @@
 #include <view/window_panel.h>
 #include <view/window_side.h>
 
-#include <renderer/scene.h>
+#include <renderer/scene/scene.h>
 
 #include <vector>
 

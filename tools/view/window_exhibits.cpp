@@ -1,6 +1,6 @@
 #include <view/window_exhibits.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <algorithm>
 #include <cmath>

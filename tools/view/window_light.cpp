@@ -1,8 +1,8 @@
 #include <view/window_light.h>
 
-#include <renderer/light.h>
-#include <wavelet/input_file.h>
-#include <wavelet/tree_set.h>
+#include <renderer/light/light.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/tree_set.h>
 
 namespace haarlight::view {
 

@@ -4,7 +4,7 @@
 #include <view/packed_light.h>
 #include <view/window_watch.h>
 
-#include <renderer/scene.h>
+#include <renderer/scene/scene.h>
 
 #include <memory>
 #include <string>

@@ -1,7 +1,7 @@
 #include <view/transfer_window.h>
 #include <view/window.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 namespace haarlight::view {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // A camera that goes round what it looks at.
 
-#include <renderer/scene.h>
+#include <renderer/scene/scene.h>
 
 namespace haarlight::view {
 

@@ -2,7 +2,7 @@
 
 #include <view/window_picture.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <epoxy/gl.h>
 

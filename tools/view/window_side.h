@@ -4,7 +4,7 @@
 #include <view/frame.h>
 #include <view/window_watch.h>
 
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
 
 #include <memory>
 #include <optional>

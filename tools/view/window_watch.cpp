@@ -1,6 +1,6 @@
 #include <view/window_watch.h>
 
-#include <wavelet/input_file.h>
+#include <wavelet/file/input_file.h>
 
 #include <cerrno>
 #include <cstring>

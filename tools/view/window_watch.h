@@ -1,7 +1,7 @@
 #pragma once
 // Files that may be rewritten while they are shown.
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <cstdint>
 #include <list>

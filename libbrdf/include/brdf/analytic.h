@@ -5,7 +5,7 @@
 // and 0 where wi or wo is not above the horizon. Colours are linear RGB. `diffuse` adds a
 // Lambertian part, diffuse/π; nothing scales it down, so diffuse + specular should stay below one.
 
-#include <wavelet/geometry.h>
+#include <wavelet/base/geometry.h>
 
 #include <variant>
 

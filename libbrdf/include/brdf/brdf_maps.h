@@ -12,7 +12,7 @@
 
 #include <brdf/measured_brdf.h>
 
-#include <wavelet/map_set.h>
+#include <wavelet/tree/map_set.h>
 
 #include <mutex>
 #include <optional>

@@ -16,7 +16,7 @@
 // dark; a small share of the samples follows the cosine, so that the density is positive wherever
 // the reflectance is; and it is that of what is drawn, exactly, whatever the factors leave out.
 
-#include <wavelet/geometry.h>
+#include <wavelet/base/geometry.h>
 
 #include <array>
 #include <cstdint>

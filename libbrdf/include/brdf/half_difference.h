@@ -12,7 +12,7 @@
 
 #include <brdf/merl_file.h>
 
-#include <wavelet/trigonometry.h>
+#include <wavelet/base/trigonometry.h>
 
 namespace haarlight::brdf {
 

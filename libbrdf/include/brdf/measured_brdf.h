@@ -8,8 +8,8 @@
 #include <brdf/large_pages.h>
 #include <brdf/merl_file.h>
 
-#include <wavelet/geometry.h>
-#include <wavelet/lanes.h>
+#include <wavelet/base/geometry.h>
+#include <wavelet/base/lanes.h>
 
 #include <array>
 #include <cstddef>

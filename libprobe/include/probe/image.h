@@ -1,7 +1,7 @@
 #pragma once
 // The picture a probe is made of, before anything is said about directions.
 
-#include <wavelet/geometry.h>
+#include <wavelet/base/geometry.h>
 
 #include <cstddef>
 #include <vector>

@@ -15,10 +15,11 @@
 // mirrorball  orthographic photograph of a mirrored sphere by someone who stands at +z and looks
 //             forward: the sphere's normal is (a, b, √(1 − r²)), the centre reflects back (+z), the
 //             rim forward, right is +x. dω = 16 du dv.
-// octahedral  the square of <wavelet/sphere_map.h> in world axes: the centre is +z, u grows towards
+// octahedral  the square of <wavelet/square/sphere_map.h> in world axes: the centre is +z, u grows
+// towards
 //             +x and v towards +y. dω = 4π du dv.
 
-#include <wavelet/geometry.h>
+#include <wavelet/base/geometry.h>
 
 #include <optional>
 #include <string>

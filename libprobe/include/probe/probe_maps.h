@@ -1,12 +1,12 @@
 #pragma once
 // Sets of square maps made from a probe: one in the world's frame, or a table of rotated ones.
 //
-// Squares are those of <wavelet/sphere_map.h>. Each pixel is the average of the probe's radiance
-// over its square, and no light is missed, however small: see world_map().
+// Squares are those of <wavelet/square/sphere_map.h>. Each pixel is the average of the probe's
+// radiance over its square, and no light is missed, however small: see world_map().
 
 #include <probe/probe.h>
 
-#include <wavelet/map_set.h>
+#include <wavelet/tree/map_set.h>
 
 #include <vector>
 
@@ -19,8 +19,8 @@ struct MapOptions {
 };
 
 /// The frame of cell (i, j) of M × M: n = ω_r = square_to_sphere((i + ½)/M, (j + ½)/M), and t and b
-/// those of frame_about(ω_r) in <wavelet/geometry.h>. A map's pixel at local ω shows the radiance
-/// from t ω_x + b ω_y + ω_r ω_z. For M = 1 maps are in world axes instead.
+/// those of frame_about(ω_r) in <wavelet/base/geometry.h>. A map's pixel at local ω shows the
+/// radiance from t ω_x + b ω_y + ω_r ω_z. For M = 1 maps are in world axes instead.
 Frame light_frame(int i, int j, int orientations);
 
 /// The frame of a cell carried along the great circle to another axis: the least rotation that

@@ -4,7 +4,7 @@
 #include <probe/probe.h>
 #include <probe/read_image.h>
 
-#include <wavelet/provenance.h>
+#include <wavelet/file/provenance.h>
 
 #include <optional>
 #include <string>

@@ -1,8 +1,8 @@
-#include "emitters.h"
+#include "path/emitters.h"
 
-#include "../shape_placement.h"
+#include "shapes/shape_placement.h"
 
-#include <wavelet/trigonometry.h>
+#include <wavelet/base/trigonometry.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 // Other shapes, ellipsoids and planes among them, and any shape seen from inside or by itself, are
 // found by following the reflectance alone; their density here is 0.
 
-#include <renderer/scene.h>
-#include <renderer/shapes.h>
+#include <renderer/scene/scene.h>
+#include <renderer/shapes/shapes.h>
 
 #include <optional>
 #include <vector>

@@ -1,8 +1,8 @@
-#include <renderer/path.h>
+#include <renderer/path/path.h>
 
-#include "../film_rendering.h"
-#include "../light_samples.h"
-#include "path_tracer.h"
+#include "film/film_rendering.h"
+#include "light/light_samples.h"
+#include "path/path_tracer.h"
 
 #include <algorithm>
 #include <optional>

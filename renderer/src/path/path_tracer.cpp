@@ -1,4 +1,4 @@
-#include "path_tracer.h"
+#include "path/path_tracer.h"
 
 #include <algorithm>
 

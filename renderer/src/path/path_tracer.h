@@ -1,9 +1,9 @@
 #pragma once
 // Paths from the second vertex on.
 
-#include "path_vertex.h"
+#include "path/path_vertex.h"
 
-#include <renderer/path.h>
+#include <renderer/path/path.h>
 
 namespace haarlight::renderer {
 

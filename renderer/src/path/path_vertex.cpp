@@ -1,4 +1,4 @@
-#include "path_vertex.h"
+#include "path/path_vertex.h"
 
 namespace haarlight::renderer {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 // A surface point on a path: the light it sends back, and where the path goes on.
 
-#include "../samplers/lobe_sampling.h"
-#include "emitters.h"
+#include "path/emitters.h"
+#include "samplers/lobe_sampling.h"
 
-#include <renderer/loaded_scene.h>
+#include <renderer/scene/loaded_scene.h>
 
 #include <optional>
 #include <span>

@@ -1,4 +1,4 @@
-#include "bidirectional_proposal.h"
+#include "samplers/bidirectional_proposal.h"
 
 #include <algorithm>
 

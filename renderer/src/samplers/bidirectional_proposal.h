@@ -1,8 +1,8 @@
 #pragma once
 // What bidirectional importance sampling draws its candidates from: light or reflectance.
 
-#include "lobe_peaks.h"
-#include "lobe_sampling.h"
+#include "samplers/lobe_peaks.h"
+#include "samplers/lobe_sampling.h"
 
 #include <memory>
 

@@ -1,8 +1,8 @@
 #pragma once
 // What both variants of bidirectional importance sampling share (Burke, Ghosh and Heidrich 2005).
 
-#include "bidirectional_proposal.h"
-#include "candidate_pool.h"
+#include "samplers/bidirectional_proposal.h"
+#include "samplers/candidate_pool.h"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 // accepted with probability weight / bound until there are enough samples, or for M tries each;
 // what is then missing is resampled from the candidates tried.
 
-#include "bidirectional_sampler.h"
-#include "kinds.h"
+#include "samplers/bidirectional_sampler.h"
+#include "samplers/kinds.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // Bidirectional importance sampling by sampling-importance resampling (Burke, Ghosh and Heidrich
 // 2005): of M candidates for each of N samples, all M N together, N are chosen.
 
-#include "bidirectional_sampler.h"
-#include "kinds.h"
+#include "samplers/bidirectional_sampler.h"
+#include "samplers/kinds.h"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // The reflectance alone.
 
-#include "kinds.h"
-#include "lobe_sampling.h"
+#include "samplers/kinds.h"
+#include "samplers/lobe_sampling.h"
 
 namespace haarlight::renderer {
 namespace {

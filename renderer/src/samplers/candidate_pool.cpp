@@ -1,4 +1,4 @@
-#include "candidate_pool.h"
+#include "samplers/candidate_pool.h"
 
 #include <algorithm>
 

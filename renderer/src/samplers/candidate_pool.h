@@ -2,7 +2,7 @@
 // Candidates of the samplers that resample: directions drawn from something simple, weighed by what
 // they reflect, of which a few are chosen.
 
-#include <renderer/sampler.h>
+#include <renderer/samplers/sampler.h>
 
 #include <limits>
 #include <span>

@@ -1,8 +1,8 @@
 #pragma once
 // The samplers behind make_sampler_factory(), one source file each.
 
-#include <renderer/loaded_scene.h>
-#include <renderer/sampler.h>
+#include <renderer/samplers/sampler.h>
+#include <renderer/scene/loaded_scene.h>
 
 #include <functional>
 

@@ -2,10 +2,10 @@
 // Images"): Lloyd's algorithm on the sphere, weighted by luminance, with sites added step by step
 // where the energy is.
 
-#include "kinds.h"
-#include "lamps.h"
+#include "samplers/kinds.h"
+#include "samplers/lamps.h"
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,6 @@
-#include "lamps.h"
+#include "samplers/lamps.h"
 
-#include <wavelet/sphere_map.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 

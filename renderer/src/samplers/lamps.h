@@ -2,8 +2,8 @@
 // Lamps in place of a light: what all samplers share that stand one direction for each region of
 // the sphere.
 
-#include <renderer/light.h>
-#include <renderer/sampler.h>
+#include <renderer/light/light.h>
+#include <renderer/samplers/sampler.h>
 
 #include <functional>
 #include <map>

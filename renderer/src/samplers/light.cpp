@@ -1,6 +1,6 @@
 // The light alone: pixels of the probe by cdf inversion.
 
-#include "kinds.h"
+#include "samplers/kinds.h"
 
 namespace haarlight::renderer {
 namespace {

@@ -2,8 +2,8 @@
 // Products in the light's frame, mixed with samples of the light alone: where the product's density
 // is too low, behind an occluder or at the foot of a lobe, weights then stay bounded.
 
-#include "product_tree_sampler.h"
-#include "technique_split.h"
+#include "samplers/product_tree_sampler.h"
+#include "samplers/technique_split.h"
 
 namespace haarlight::renderer {
 

@@ -1,4 +1,4 @@
-#include "light_partition.h"
+#include "samplers/light_partition.h"
 
 #include <algorithm>
 

@@ -2,9 +2,9 @@
 // A partition of a probe's picture that follows a reflectance: rectangles small where it varies and
 // there is light, and the product of both over each.
 
-#include "light_sums.h"
+#include "samplers/light_sums.h"
 
-#include <renderer/material.h>
+#include <renderer/material/material.h>
 
 #include <span>
 #include <vector>

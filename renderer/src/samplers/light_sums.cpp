@@ -1,6 +1,6 @@
-#include "light_sums.h"
+#include "samplers/light_sums.h"
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 #include <algorithm>
 #include <numeric>

@@ -1,9 +1,9 @@
-#include "lobe_peaks.h"
+#include "samplers/lobe_peaks.h"
 
-#include "lobe_sampling.h"
+#include "samplers/lobe_sampling.h"
 
-#include <wavelet/parallel.h>
-#include <wavelet/trigonometry.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/base/trigonometry.h>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 // How high reflectances rise, by θ_r: what samplers that bound a reflectance start from.
 
-#include <renderer/loaded_scene.h>
+#include <renderer/scene/loaded_scene.h>
 
 #include <vector>
 

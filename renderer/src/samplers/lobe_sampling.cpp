@@ -1,6 +1,6 @@
-#include "lobe_sampling.h"
+#include "samplers/lobe_sampling.h"
 
-#include <wavelet/sphere_map.h>
+#include <wavelet/square/sphere_map.h>
 
 namespace haarlight::renderer {
 

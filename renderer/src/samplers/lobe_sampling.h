@@ -2,11 +2,11 @@
 // Sampling a reflectance alone: by its model's own routine in the frame of the normal, or by
 // descent in the tree of the nearest θ_r cell, in the reflection frame.
 
-#include <renderer/material.h>
-#include <renderer/sampler.h>
+#include <renderer/material/material.h>
+#include <renderer/samplers/sampler.h>
 
 #include <brdf/analytic_sampling.h>
-#include <wavelet/descent.h>
+#include <wavelet/tree/descent.h>
 
 #include <span>
 #include <vector>

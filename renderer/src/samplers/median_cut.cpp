@@ -1,10 +1,10 @@
 // Lamps for regions of equal energy (Debevec 2005, "A Median Cut Algorithm for Light Probe
 // Sampling").
 
-#include "kinds.h"
-#include "lamps.h"
+#include "samplers/kinds.h"
+#include "samplers/lamps.h"
 
-#include <wavelet/trigonometry.h>
+#include <wavelet/base/trigonometry.h>
 
 #include <algorithm>
 #include <array>

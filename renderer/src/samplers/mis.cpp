@@ -1,7 +1,7 @@
 // Multiple importance sampling with the balance heuristic.
 
-#include "kinds.h"
-#include "mis_sampler.h"
+#include "samplers/kinds.h"
+#include "samplers/mis_sampler.h"
 
 namespace haarlight::renderer {
 

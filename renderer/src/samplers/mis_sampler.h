@@ -1,8 +1,8 @@
 #pragma once
 // Multiple importance sampling of light and reflectance, whatever the heuristic that weights them.
 
-#include "lobe_sampling.h"
-#include "technique_split.h"
+#include "samplers/lobe_sampling.h"
+#include "samplers/technique_split.h"
 
 namespace haarlight::renderer {
 

@@ -6,10 +6,10 @@
 // on the way to it add up to; where n points are wanted per unit of the tiling's area, those
 // numbered below n are taken, which are spread evenly whatever n is.
 
-#include "kinds.h"
-#include "lamps.h"
+#include "samplers/kinds.h"
+#include "samplers/lamps.h"
 
-#include <wavelet/sphere_map.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 #include <array>

@@ -4,12 +4,12 @@
 // a square of the product that counts as hidden lets through then weighs no more than its
 // reflectance.
 
-#include "../visibility/hit_occlusion.h"
-#include "kinds.h"
-#include "light_mixture.h"
-#include "product_options.h"
+#include "samplers/kinds.h"
+#include "samplers/light_mixture.h"
+#include "samplers/product_options.h"
+#include "visibility/hit_occlusion.h"
 
-#include <wavelet/adaptive_product.h>
+#include <wavelet/product/adaptive_product.h>
 
 #include <algorithm>
 #include <cmath>

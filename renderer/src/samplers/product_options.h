@@ -1,7 +1,7 @@
 #pragma once
 // How far samplers refine products of one light tree and the reflectance's averages.
 
-#include <renderer/sampler.h>
+#include <renderer/samplers/sampler.h>
 
 namespace haarlight::renderer {
 

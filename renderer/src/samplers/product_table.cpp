@@ -1,12 +1,12 @@
 // The paper's product: the stored trees of the nearest entries of two tables, multiplied and
 // cached.
 
-#include "kinds.h"
-#include "product_tree_sampler.h"
-#include "table_cells.h"
+#include "samplers/kinds.h"
+#include "samplers/product_tree_sampler.h"
+#include "samplers/table_cells.h"
 
-#include <wavelet/error.h>
-#include <wavelet/synchronous_product.h>
+#include <wavelet/base/error.h>
+#include <wavelet/product/synchronous_product.h>
 
 namespace haarlight::renderer {
 namespace {

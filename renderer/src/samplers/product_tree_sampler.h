@@ -1,10 +1,10 @@
 #pragma once
 // What both product samplers share: drawing from a product tree that lies in some frame.
 
-#include <renderer/sampler.h>
+#include <renderer/samplers/sampler.h>
 
-#include <wavelet/product_tree.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/product/product_tree.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 

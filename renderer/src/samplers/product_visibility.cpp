@@ -2,12 +2,12 @@
 // whose squares, from the coarsest on, count for what geometry tells is seen of them, so that what
 // is hidden costs nothing and shadow edges are followed to fine squares.
 
-#include "../visibility/seen_squares.h"
-#include "kinds.h"
-#include "light_mixture.h"
-#include "product_options.h"
+#include "samplers/kinds.h"
+#include "samplers/light_mixture.h"
+#include "samplers/product_options.h"
+#include "visibility/seen_squares.h"
 
-#include <wavelet/adaptive_product.h>
+#include <wavelet/product/adaptive_product.h>
 
 #include <algorithm>
 

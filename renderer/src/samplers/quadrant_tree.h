@@ -2,7 +2,7 @@
 // Points warped down a quadtree of weights (hierarchical sample warping, Clarberg et al. 2005):
 // each point goes its way by its own coordinates, so a whole set is warped by warping its points.
 
-#include <wavelet/product_tree.h>
+#include <wavelet/product/product_tree.h>
 
 #include <span>
 

@@ -1,4 +1,4 @@
-#include "kinds.h"
+#include "samplers/kinds.h"
 
 #include <array>
 

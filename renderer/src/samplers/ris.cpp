@@ -2,9 +2,9 @@
 // the light and half from the reflectance, one is chosen in proportion to the luminance of f_r L
 // cos over their mean density, and counts with its target over the mean weight of its own M.
 
-#include "candidate_pool.h"
-#include "kinds.h"
-#include "mis_sampler.h"
+#include "samplers/candidate_pool.h"
+#include "samplers/kinds.h"
+#include "samplers/mis_sampler.h"
 
 #include <algorithm>
 

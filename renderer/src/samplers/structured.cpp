@@ -1,8 +1,8 @@
 // Lamps in strata of like brightness (Agarwal, Ramamoorthi, Belongie and Jensen 2003, "Structured
 // Importance Sampling of Environment Maps").
 
-#include "kinds.h"
-#include "lamps.h"
+#include "samplers/kinds.h"
+#include "samplers/lamps.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
-#include "table_cells.h"
+#include "samplers/table_cells.h"
 
 #include <probe/probe_maps.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 #pragma once
 // The nearest entries of the paper's two tables at a shading point.
 
-#include <renderer/light.h>
-#include <renderer/material.h>
+#include <renderer/light/light.h>
+#include <renderer/material/material.h>
 
-#include <wavelet/symmetry.h>
+#include <wavelet/square/symmetry.h>
 
 namespace haarlight::renderer {
 

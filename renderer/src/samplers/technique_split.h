@@ -1,7 +1,7 @@
 #pragma once
 // How a sampler of two techniques divides a pixel's samples.
 
-#include <renderer/sampler.h>
+#include <renderer/samplers/sampler.h>
 
 namespace haarlight::renderer {
 

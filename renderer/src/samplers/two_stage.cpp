@@ -2,11 +2,11 @@
 // divided by the reflectance at each point, a region is chosen by the product of both, and a place
 // in it by the light's summed-area table.
 
-#include "kinds.h"
-#include "light_partition.h"
-#include "lobe_sampling.h"
+#include "samplers/kinds.h"
+#include "samplers/light_partition.h"
+#include "samplers/lobe_sampling.h"
 
-#include <wavelet/sphere_map.h>
+#include <wavelet/square/sphere_map.h>
 
 namespace haarlight::renderer {
 namespace {

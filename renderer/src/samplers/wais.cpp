@@ -2,12 +2,12 @@
 // nearest entries of two tables as hash tables of wavelet coefficients of luminance, their product
 // by the published algorithm, once for each point, and points warped down the product's tree.
 
-#include "kinds.h"
-#include "quadrant_tree.h"
-#include "table_cells.h"
+#include "samplers/kinds.h"
+#include "samplers/quadrant_tree.h"
+#include "samplers/table_cells.h"
 
-#include <wavelet/reference.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/reference/reference.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
-#include <renderer/transfer.h>
+#include <renderer/transfer/transfer.h>
 
-#include <wavelet/input_file.h>
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/file/input_file.h>
 
 #include <algorithm>
 #include <cmath>

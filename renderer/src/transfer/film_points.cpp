@@ -1,8 +1,8 @@
-#include <renderer/transfer.h>
+#include <renderer/transfer/transfer.h>
 
-#include <renderer/camera.h>
+#include <renderer/scene/camera.h>
 
-#include <wavelet/parallel.h>
+#include <wavelet/base/parallel.h>
 
 namespace haarlight::renderer {
 namespace {

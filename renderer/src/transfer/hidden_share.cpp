@@ -1,4 +1,4 @@
-#include "hidden_share.h"
+#include "transfer/hidden_share.h"
 
 #include <algorithm>
 #include <array>

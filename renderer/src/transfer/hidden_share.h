@@ -1,9 +1,9 @@
 #pragma once
 // How much of a transfer lies behind a ball.
 
-#include "../visibility/cap_region.h"
+#include "visibility/cap_region.h"
 
-#include <wavelet/tree.h>
+#include <wavelet/tree/tree.h>
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
 namespace haarlight::renderer {
 

@@ -1,10 +1,10 @@
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
-#include <renderer/turned_light.h>
+#include <renderer/transfer/turned_light.h>
 
-#include <wavelet/dense_coefficients.h>
-#include <wavelet/parallel.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/square/sphere_map.h>
+#include <wavelet/transform/dense_coefficients.h>
 
 namespace haarlight::renderer {
 namespace {

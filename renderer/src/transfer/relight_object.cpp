@@ -1,11 +1,11 @@
 // Transfer that is all but one object's visibility: the object moves, its shadow with it.
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
-#include "hidden_share.h"
+#include "transfer/hidden_share.h"
 
-#include <wavelet/multiply.h>
-#include <wavelet/parallel.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/product/multiply.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <optional>
 

@@ -1,11 +1,11 @@
 // Transfer that is all but the reflectance: another material, or another place to look from.
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
-#include <renderer/render.h>
+#include <renderer/film/render.h>
 
-#include <wavelet/adaptive_product.h>
-#include <wavelet/parallel.h>
-#include <wavelet/sphere_map.h>
+#include <wavelet/base/parallel.h>
+#include <wavelet/product/adaptive_product.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <deque>
 

@@ -1,6 +1,6 @@
-#include <renderer/relight.h>
+#include <renderer/transfer/relight.h>
 
-#include <wavelet/error.h>
+#include <wavelet/base/error.h>
 
 #include <stdexcept>
 

@@ -1,6 +1,6 @@
-#include <renderer/transfer.h>
+#include <renderer/transfer/transfer.h>
 
-#include <wavelet/sphere_map.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <cassert>
 

@@ -1,6 +1,6 @@
-#include <renderer/turned_light.h>
+#include <renderer/transfer/turned_light.h>
 
-#include <renderer/transform.h>
+#include <renderer/scene/transform.h>
 
 #include <algorithm>
 

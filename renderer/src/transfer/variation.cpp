@@ -1,5 +1,5 @@
 // What varies, as on the command line.
-#include <renderer/transfer.h>
+#include <renderer/transfer/transfer.h>
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "cap_region.h"
+#include "visibility/cap_region.h"
 
 #include <cmath>
 

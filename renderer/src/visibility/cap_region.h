@@ -1,8 +1,8 @@
 #pragma once
 // Everything within a circle on the sphere, or everything outside of it.
 
-#include <wavelet/region.h>
-#include <wavelet/square_cap.h>
+#include <wavelet/product/region.h>
+#include <wavelet/square/square_cap.h>
 
 namespace haarlight::renderer::detail {
 

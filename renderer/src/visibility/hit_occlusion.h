@@ -1,10 +1,10 @@
 #pragma once
 // What is in the light's way at a hit, as rays tell.
 
-#include <renderer/light.h>
-#include <renderer/shapes.h>
+#include <renderer/light/light.h>
+#include <renderer/shapes/shapes.h>
 
-#include <wavelet/adaptive_product.h>
+#include <wavelet/product/adaptive_product.h>
 
 namespace haarlight::renderer::detail {
 

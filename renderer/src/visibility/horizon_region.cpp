@@ -1,4 +1,4 @@
-#include "horizon_region.h"
+#include "visibility/horizon_region.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 #pragma once
 // What the shaded object itself leaves visible.
 
-#include "cap_region.h"
-#include "solid_region.h"
+#include "visibility/cap_region.h"
+#include "visibility/solid_region.h"
 
 #include <optional>
 

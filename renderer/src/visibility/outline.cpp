@@ -1,6 +1,6 @@
-#include "outline.h"
+#include "visibility/outline.h"
 
-#include "../shape_canonical.h"
+#include "shapes/shape_canonical.h"
 
 namespace haarlight::renderer::detail {
 namespace {

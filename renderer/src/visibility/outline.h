@@ -2,9 +2,9 @@
 // The directions from a point in which a box may lie, by planes through the point and the box's
 // silhouette.
 
-#include <renderer/shapes.h>
-#include <wavelet/region.h>
-#include <wavelet/square_cap.h>
+#include <renderer/shapes/shapes.h>
+#include <wavelet/product/region.h>
+#include <wavelet/square/square_cap.h>
 
 #include <array>
 

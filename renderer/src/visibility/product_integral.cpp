@@ -1,12 +1,12 @@
-#include <renderer/product_integral.h>
+#include <renderer/visibility/product_integral.h>
 
-#include "../film_rendering.h"
+#include "film/film_rendering.h"
 
 #include <probe/probe_maps.h>
-#include <renderer/visibility.h>
-#include <wavelet/compress.h>
-#include <wavelet/masked_product.h>
-#include <wavelet/sphere_map.h>
+#include <renderer/visibility/visibility.h>
+#include <wavelet/product/masked_product.h>
+#include <wavelet/square/sphere_map.h>
+#include <wavelet/transform/compress.h>
 
 #include <span>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "ray_lanes.h"
+#include "visibility/ray_lanes.h"
 
 #include <array>
 #include <limits>

@@ -2,7 +2,7 @@
 // Which of four rays from one point meet a shape, in float: near enough for estimates of what it
 // hides, and many times quicker than rays one by one. <shape_canonical.h> has the exact answers.
 
-#include <renderer/shapes.h>
+#include <renderer/shapes/shapes.h>
 
 namespace haarlight::renderer::detail {
 

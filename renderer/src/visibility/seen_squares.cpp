@@ -1,6 +1,6 @@
-#include "seen_squares.h"
+#include "visibility/seen_squares.h"
 
-#include "ray_lanes.h"
+#include "visibility/ray_lanes.h"
 
 #include <algorithm>
 #include <array>

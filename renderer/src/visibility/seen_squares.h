@@ -2,12 +2,12 @@
 // How much of a square the objects of a scene leave visible from a point, by estimate: quick enough
 // to be asked of every square that a sampler has to do with.
 
-#include "cap_region.h"
-#include "outline.h"
+#include "visibility/cap_region.h"
+#include "visibility/outline.h"
 
-#include <renderer/visibility.h>
+#include <renderer/visibility/visibility.h>
 
-#include <wavelet/square_visibility.h>
+#include <wavelet/product/square_visibility.h>
 
 #include <vector>
 

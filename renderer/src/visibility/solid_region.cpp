@@ -1,6 +1,6 @@
-#include "solid_region.h"
+#include "visibility/solid_region.h"
 
-#include "../shape_canonical.h"
+#include "shapes/shape_canonical.h"
 
 #include <algorithm>
 #include <array>

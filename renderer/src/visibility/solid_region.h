@@ -1,13 +1,13 @@
 #pragma once
 // What a finite shape of any kind leaves visible.
 
-#include "cap_region.h"
+#include "visibility/cap_region.h"
 
-#include <renderer/light.h>
-#include <renderer/shapes.h>
+#include <renderer/light/light.h>
+#include <renderer/shapes/shapes.h>
 
-#include <wavelet/region.h>
-#include <wavelet/square_cap.h>
+#include <wavelet/product/region.h>
+#include <wavelet/square/square_cap.h>
 
 #include <cstddef>
 #include <vector>

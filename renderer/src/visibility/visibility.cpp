@@ -1,7 +1,7 @@
-#include <renderer/visibility.h>
+#include <renderer/visibility/visibility.h>
 
-#include "horizon_region.h"
-#include "solid_region.h"
+#include "visibility/horizon_region.h"
+#include "visibility/solid_region.h"
 
 #include <cassert>
 

@@ -2,7 +2,7 @@
 // A scalar function on the unit square as a hash table of its non-zero Haar coefficients.
 
 #include <wavelet/reference/square.h>
-#include <wavelet/tree.h>
+#include <wavelet/tree/tree.h>
 
 #include <array>
 #include <span>

@@ -1,0 +1,84 @@
+#include <probe/read_probe.h>
+
+#include <wavelet/base/error.h>
+
+#include <cmath>
+
+namespace haarlight::probe {
+namespace {
+
+/// Pixels darker than this share of the picture's mean count as empty.
+constexpr double dark_share = 1e-3;
+
+double mean_luminance(const Image& image) {
+  double sum = 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+    sum += luminance(Eigen::Map<const Rgb>(image.rgb.data() + i));
+  return 3 * sum / static_cast<double>(image.rgb.size());
+}
+
+/// Share of the pixels well outside the inscribed disk that are empty: nearly all in pictures of
+/// round mappings, captions being small.
+double empty_share_of_corners(const Image& image, double dark) {
+  std::size_t outside = 0;
+  std::size_t empty = 0;
+  const Vec2 size(static_cast<float>(image.width), static_cast<float>(image.height));
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const Vec2 place(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+      if (radius_squared(place.cwiseQuotient(size)) < 1.02F)
+        continue;
+      ++outside;
+      empty += luminance(image.at(x, y)) < dark ? 1 : 0;
+    }
+  return outside > 0 ? static_cast<double>(empty) / static_cast<double>(outside) : 1;
+}
+
+/// Sums of differences in log luminance along the border: of pixels that an octahedral map folds
+/// onto each other, and of pixels a quarter of the edge apart.
+struct BorderDifferences {
+  double folded = 0;
+  double apart = 0;
+
+  BorderDifferences(const Image& image, double dark) {
+    const int size = image.width;
+    const int last = size - 1;
+    const auto at = [&](int x, int y) { return std::log(luminance(image.at(x, y)) + dark); };
+    for (int i = 0; i < size; ++i) {
+      const int quarter = (i + size / 4) % size;
+      for (const int edge : {0, last}) {
+        folded += std::abs(at(i, edge) - at(last - i, edge));
+        folded += std::abs(at(edge, i) - at(edge, last - i));
+        apart += std::abs(at(i, edge) - at(quarter, edge));
+        apart += std::abs(at(edge, i) - at(edge, quarter));
+      }
+    }
+  }
+};
+
+DetectedMapping detect_square(const Image& image) {
+  const double dark = dark_share * mean_luminance(image) + 1e-30;
+  if (empty_share_of_corners(image, dark) > 0.6)
+    return {Mapping::Angular, "mapping angular: the picture is square and its corners are empty "
+                              "(a mirror ball looks so too and must be named)"};
+  const BorderDifferences border(image, dark);
+  if (border.folded < 0.5 * border.apart)
+    return {Mapping::Octahedral, "mapping octahedral: the picture is square, its corners are not "
+                                 "empty and its edges are folded onto themselves"};
+  return {Mapping::Angular, "mapping angular: the picture is square and its edges are not folded "
+                            "onto themselves as an octahedral map's are"};
+}
+
+} // namespace
+
+DetectedMapping detect_mapping(const Image& image, const std::string& path) {
+  if (image.width == 2 * image.height)
+    return {Mapping::LatLong, "mapping latlong: the picture is twice as wide as high"};
+  if (image.width == image.height)
+    return detect_square(image);
+  throw_input_error(path, "is " + std::to_string(image.width) + " × " +
+                              std::to_string(image.height) +
+                              " pixels, a probe must be square or twice as wide as high");
+}
+
+} // namespace haarlight::probe

@@ -1,0 +1,123 @@
+#pragma once
+// .haar files: sets of trees in one file. The format is specified in FORMAT.md.
+
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/output_file.h>
+#include <wavelet/tree/map_set.h>
+#include <wavelet/tree/tree.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace haarlight::wavelet {
+
+class SetLayout;
+
+/// When the trees of a file are checked. Header, index and text are checked at opening either way,
+/// and no tree is ever handed out unchecked.
+enum class Check {
+  Everything, ///< all trees at opening, from several threads
+  WhenUsed    ///< a tree is read and checked when it is first asked for
+};
+
+/// A .haar file in its mapped form. Trees are used as they lie in a private copy of the file, so
+/// that nothing that happens to the file afterwards changes them.
+class TreeSet {
+public:
+  /// Reads the file and checks it: checksum and structure of a tree in one go.
+  /// @throws Error(Input) naming the first broken rule of FORMAT.md and its byte offset; for a
+  ///         packed file, what unpacks it
+  explicit TreeSet(const std::string& path, Check check = Check::Everything);
+  explicit TreeSet(InputFile file, Check check = Check::Everything);
+
+  const std::string& path() const { return m_file.path(); }
+  std::uint64_t file_bytes() const { return m_file.size(); }
+  std::span<const std::byte> bytes() const { return m_file.bytes(); }
+  const SetInfo& info() const { return m_info; }
+  int levels() const { return m_levels; }
+  int channels() const { return m_channels; }
+  CoefficientType coefficients() const { return m_type; }
+
+  /// The stored tree of a column and a row; valid while this set lives. Safe from several threads.
+  /// @param column 0 ≤ column < info().columns
+  /// @param row    0 ≤ row < info().rows
+  /// @throws Error(Input) with Check::WhenUsed, if the tree breaks a rule
+  const TreeView& tree(int column, int row) const {
+    const std::size_t i = place(column, row);
+    if (!m_checked[i].set.load(std::memory_order_acquire))
+      check_tree(i);
+    return m_trees[i];
+  }
+
+  /// Nodes of a tree at a level, 0 ≤ level < levels(). @throws as tree()
+  std::uint32_t level_nodes(int column, int row, int level) const;
+
+  /// Bytes a tree takes in the file.
+  std::uint64_t tree_bytes(int column, int row) const;
+
+private:
+  /// An atomic that a vector can hold.
+  struct Flag {
+    std::atomic<bool> set = false;
+  };
+
+  std::size_t place(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_info.columns) +
+           static_cast<std::size_t>(column);
+  }
+  std::uint64_t bytes_of(const TreeView& view) const;
+  void check_tree(std::size_t i) const;
+
+  InputFile m_file;
+  SetInfo m_info;
+  int m_levels = 0;
+  int m_channels = 3;
+  CoefficientType m_type = CoefficientType::Half;
+  std::vector<TreeView> m_trees;
+  std::vector<std::uint64_t> m_checksums;
+  mutable std::vector<Flag> m_checked;
+  /// A tree is read and checked by one thread, which holds one of these.
+  std::unique_ptr<std::array<std::mutex, 64>> m_mutexes =
+      std::make_unique<std::array<std::mutex, 64>>();
+};
+
+/// True if the first bytes are those of a .haar file of either form, which may be damaged all the
+/// same.
+bool begins_as_tree_set(const InputFile& file);
+
+/// Takes the trees of a set one after the other, column fastest, then finish().
+class TreeSink {
+public:
+  virtual ~TreeSink() = default;
+  /// @throws Error(Output)
+  virtual void add(Tree tree) = 0;
+  /// All trees must have been added. @throws Error(Output)
+  virtual void finish() = 0;
+};
+
+/// Writes a set in its mapped form. Memory: the index.
+class TreeSetWriter : public TreeSink {
+public:
+  /// @param levels   log2 of info.size
+  /// @param channels 3 or 1
+  TreeSetWriter(OutputFile& file, const SetInfo& info, int channels, CoefficientType type);
+  ~TreeSetWriter() override;
+
+  void add(Tree tree) override;
+  void finish() override;
+
+  /// After finish(): the header as written.
+  std::span<const std::byte> header() const;
+
+private:
+  OutputFile& m_file;
+  std::unique_ptr<SetLayout> m_layout;
+};
+
+} // namespace haarlight::wavelet

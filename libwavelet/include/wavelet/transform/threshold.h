@@ -1,0 +1,49 @@
+#pragma once
+// Which coefficients of a transformed map to keep.
+
+#include <wavelet/tree/map_set.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace haarlight::wavelet {
+
+/// How a coefficient c (of the L2-normalised wavelet on square s at level l) is ranked. Colours
+/// count by c² = Σ w_i c_i², w the luminance weights.
+enum class Criterion {
+  Variance, ///< |c| / sqrt(A·Ā), A = F(s) ≥ 3 % of the mean Ā: its share in a sampler's variance.
+            ///< Tolerance: the largest rank dropped
+  L2, ///< |c|. Tolerance: bound of the relative L2 error ‖F − F'‖/‖F‖, reached as nearly as
+      ///< possible
+  Linf, ///< |c|·2^l. Tolerance: bound of the error's maximum relative to max |F|
+  Count ///< |c|, keeping a given number
+};
+
+/// @throws nothing; an unknown name gives nothing
+std::optional<Criterion> criterion_from_name(const std::string& name);
+std::string criterion_name(Criterion criterion);
+
+struct ThresholdOptions {
+  Criterion criterion = Criterion::Variance;
+  double tolerance = 0.0005; ///< see Criterion; 0 keeps everything that is not zero
+  std::optional<std::size_t>
+      keep; ///< if given, the number of highest-ranked coefficients to keep per map,
+            ///< in place of the tolerance; Criterion::Count needs it
+};
+
+/// The tolerance that serves when none is asked for. Variance: 0.0001 for a light's one world-frame
+/// map, whose every detail goes into every product, else 0.0005. L2: 0.01. Linf: 0.002.
+double default_tolerance(const SetInfo& info, Criterion criterion);
+
+struct Kept {
+  std::size_t coefficients = 0; ///< RGB triples kept, the mean not counted
+  double limit = 0;             ///< the largest rank dropped, or its bound
+};
+
+/// Sets dropped coefficients of a map transformed by haar_forward() to zero, all channels at once.
+Kept apply_threshold(Map& transformed, const ThresholdOptions& options);
+
+} // namespace haarlight::wavelet

@@ -1,0 +1,76 @@
+#pragma once
+// How far two maps, or two sets of maps, lie apart.
+//
+// A is the reference, B what is judged. Integrals ∫∫ run over the unit square, so that they are
+// averages over pixels; colours count by luminance, |c|² = Σ w_i c_i², as thresholding counts them.
+// Everything is in the unit of the maps' pixels: a BRDF set whose pixels hold f_r·cos is compared
+// with the cosine.
+
+#include <wavelet/tree/map_set.h>
+
+#include <vector>
+
+namespace haarlight::wavelet {
+
+/// Sums of squared L2-normalised Haar coefficients.
+struct LevelDifference {
+  double difference = 0; ///< of B − A
+  double reference = 0;  ///< of A
+
+  double l2() const;
+  double relative_l2() const; ///< 0 of equal maps, infinite where A holds nothing
+};
+
+/// Of two maps; of two sets averages over the maps, and the largest of what is a maximum.
+struct Difference {
+  double squared_error = 0; ///< ∫∫ |B − A|²
+  double energy = 0;        ///< ∫∫ |A|²
+  double largest_error = 0; ///< largest |B − A| of any channel
+  double peak = 0;          ///< largest |A| of any channel
+  LevelDifference mean;     ///< of the scaling function: the maps' averages
+  std::vector<LevelDifference>
+      levels; ///< by level of the wavelets, 0 first. By Parseval's identity
+              ///< they and the mean add up to squared_error and energy
+
+  double l2() const; ///< root mean square
+  double relative_l2() const;
+  double relative_linf() const;
+  /// 20 log₁₀(peak / l2), dB; infinite for equal maps.
+  double psnr() const;
+};
+
+struct MapDifference {
+  Difference difference;
+  int x = 0; ///< the pixel of the largest error
+  int y = 0;
+  double mean_a = 0; ///< luminance, average over the map
+  double mean_b = 0;
+};
+
+/// @param a,b of equal size
+MapDifference compare_maps(const Map& a, const Map& b);
+
+struct SetDifference {
+  Difference difference;
+  int maps = 0;
+
+  MapPlace largest; ///< the map with the largest error of a channel …
+  int x = 0;        ///< … and its pixel
+  int y = 0;
+
+  MapPlace worst; ///< the map with the largest l2
+  Difference worst_difference;
+
+  double mean_error = 0;       ///< of the sum of all maps' averages (luminance), relative, signed
+  double worst_mean_error = 0; ///< of one map's average, absolute, relative to the larger of A's
+                               ///< own and a tenth of A's over all maps
+  MapPlace worst_mean;
+};
+
+/// Compares map by map, a few at a time and from several threads; the result does not depend on
+/// their number.
+/// @param a,b sets of equal size, columns and rows
+/// @throws whatever the sources throw
+SetDifference compare_sets(const MapSource& a, const MapSource& b, const Progress& progress = {});
+
+} // namespace haarlight::wavelet

@@ -1,0 +1,7 @@
+#include "transform/haar_tile.h"
+
+namespace haarlight::wavelet::haar {
+
+template struct TileTransform<32>;
+
+} // namespace haarlight::wavelet::haar

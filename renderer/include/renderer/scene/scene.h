@@ -1,0 +1,76 @@
+#pragma once
+// A scene in words: which files, which shapes, which camera, as plain values. Nothing is loaded
+// yet. renderer/SCENE.md documents the file format; <renderer/scene/scene_file.h> reads it.
+
+#include <renderer/scene/transform.h>
+#include <renderer/shapes/shape.h>
+
+#include <brdf/analytic.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace haarlight::renderer {
+
+enum class Projection {
+  Perspective, ///< rays from one point
+  Orthographic ///< parallel rays
+};
+
+/// Looks from `from` to `to`; `up` points upwards in the picture once made perpendicular.
+struct CameraDescription {
+  Projection projection = Projection::Perspective;
+  Vec3 from = Vec3(0, 0, 1);
+  Vec3 to = Vec3::Zero();  ///< not `from`
+  Vec3 up = Vec3::UnitY(); ///< not parallel to the view
+  double fov = 30;         ///< perspective: vertical field of view, degrees, in (0, 180)
+  double height = 2;       ///< orthographic: height of the picture, world units, > 0
+};
+
+/// Light from infinitely far, by direction. At least one of `probe`, `haar`, `table` is given.
+struct LightDescription {
+  std::string probe;            ///< image file, or empty
+  std::string haar;             ///< tree of the one world-frame map, or empty
+  std::string table;            ///< trees of the table of rotated maps, or empty
+  std::string mapping = "auto"; ///< how `probe` shows the sphere: auto, angular, latlong,
+                                ///< mirrorball or octahedral
+  std::string layer;            ///< layer of `probe` (OpenEXR), or empty
+  std::string part;             ///< part (OpenEXR) or page (TIFF) of `probe`, or empty
+  double rotate = 0; ///< degrees the light is turned about world +y, right-handed: the light from
+                     ///< ω is what the probe shows at ω turned by −rotate
+  bool background = true; ///< the light itself is seen where no object is; else black
+};
+
+/// At least one of the files, or `lambert` or `model` alone, or none of them: black. Any may shine.
+struct MaterialDescription {
+  std::string name;
+  std::string brdf;           ///< MERL file, or empty
+  std::string haar;           ///< trees of the θ_r-only set, or empty
+  std::string table;          ///< trees of the set with rolls, or empty
+  std::optional<Rgb> lambert; ///< albedo in [0, 1]: f_r = lambert/π
+  std::optional<brdf::AnalyticBrdf> model;
+  Rgb emission = Rgb::Zero(); ///< radiance into all directions, on the side it is seen from; ≥ 0
+};
+
+struct ObjectDescription {
+  Shape shape;
+  Transform transform; ///< applied to the shape where it stands
+  int material = 0;    ///< index into SceneDescription::materials
+};
+
+/// File names are as the scene file gives them, put behind its folder unless they are absolute.
+struct SceneDescription {
+  std::string path; ///< of the scene file
+  std::string hash; ///< of its bytes, for provenance
+  int width = 256;  ///< pixels
+  int height = 256;
+  CameraDescription camera;
+  LightDescription light;
+  std::vector<MaterialDescription> materials; ///< in the file's order
+  std::vector<ObjectDescription> objects;     ///< in the file's order, as hits number them
+  std::vector<std::string> object_names; ///< of the objects in order, all different but for empty
+                                         ///< ones; may be shorter than `objects`
+};
+
+} // namespace haarlight::renderer

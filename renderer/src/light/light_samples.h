@@ -1,0 +1,62 @@
+#pragma once
+// Samples of the distant light at the points that pixels see, by the chosen sampler.
+
+#include "film/film_rendering.h"
+
+#include <optional>
+#include <vector>
+
+namespace haarlight::renderer {
+
+/// One thread's. What a sample adds to ∫ f_r L v cos dω is weight(i) where visible(i), divided by
+/// their number.
+class LightSamples {
+public:
+  LightSamples(const LoadedScene& scene, const RenderOptions& options,
+               const RenderFactories& factories);
+
+  void forget();
+
+  /// Turns to a point. `seen` must live until the next call.
+  void prepare(const PixelHit& seen, ShadingCost& cost);
+
+  /// L_ns, for estimators that need it.
+  std::optional<Rgb> unshadowed() const;
+
+  /// Draws a pass's samples for the point.
+  void sample(const Pass& pass);
+
+  /// f_r L cos / p; 0 of samples that count nothing.
+  Rgb weight(std::size_t i) const;
+
+  /// Whether light reaches the point from sample i: traces its ray. False where weight() is 0.
+  bool visible(std::size_t i) const;
+
+  /// Whether the direction of sample i is unoccluded, however little it reflects: traces its ray.
+  /// Nothing if it is no direction above the horizon.
+  std::optional<bool> unoccluded(std::size_t i) const;
+
+  float pdf(std::size_t i) const { return m_directions[i].pdf; }
+  Technique technique(std::size_t i) const { return m_directions[i].technique; }
+
+  /// As Sampler's.
+  SumVariance shared_variance(std::span<const std::uint8_t> visible) const {
+    return m_sampler->shared_variance(visible);
+  }
+
+private:
+  bool trace(std::size_t i) const;
+
+  const LoadedScene& m_scene;
+  const RenderOptions& m_options;
+  std::unique_ptr<Sampler> m_sampler;
+  std::unique_ptr<Sampler> m_integrator; ///< of L_ns, where the sampler has none
+  const PixelHit* m_seen = nullptr;
+  ShadingPoint m_point;
+  std::vector<DirectionSample> m_directions;
+  std::vector<Vec3> m_candidates;
+  std::vector<Rgb> m_reflected; ///< f_r L cos
+  std::vector<Rgb> m_radiance;
+};
+
+} // namespace haarlight::renderer
