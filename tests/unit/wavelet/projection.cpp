@@ -12,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <random>
-#include <span>
 
 using namespace haarlight;
 using namespace haarlight::wavelet;
@@ -165,13 +164,15 @@ TEST_CASE("variances within squares are those of their pixels") {
 TEST_CASE("averages and deviations scale with the function over the range of float") {
   const Map map = rough_map(6);
   const Tree tree = tree_of(map);
-  const Pyramid pyramid(std::span(std::array{tree.view()}));
+  const std::array trees = {tree.view()};
+  const Pyramid pyramid(trees);
   for (const float scale : {0x1p-100F, 0x1p-66F, 0x1p66F, 0x1p100F}) {
     Map scaled = map;
     for (float& value : scaled.rgb)
       value *= scale;
     const Tree scaled_tree = tree_of(scaled);
-    const Pyramid other(std::span(std::array{scaled_tree.view()}));
+    const std::array scaled_trees = {scaled_tree.view()};
+    const Pyramid other(scaled_trees);
     for (const int level : {0, 2, 4}) {
       const Float4 expected = pyramid.lookup(0, level, 0.3F, 0.2F);
       const Float4 found = other.lookup(0, level, 0.3F, 0.2F) / scale;
