@@ -203,7 +203,9 @@ private:
       return text.substr(text.find_last_of('\n', text.size() - 2) + 1);
     };
     return bytes.size() > 2 && bytes.substr(0, 8) == wanted.substr(0, 8) &&
-           (last_line(bytes) == last_line(wanted) || output.ends_with(".csv"));
+           (output.ends_with(".csv")
+                ? std::ranges::count(bytes, '\n') == std::ranges::count(wanted, '\n')
+                : last_line(bytes) == last_line(wanted));
   }
 
   void clear() const {
