@@ -74,7 +74,7 @@ lacks() { if grep -qF -- "$1" "$log/page.html"; then fail "the page holds '$1'";
 for file in brdf rolls world table packed grey transfer; do
   page $file.haar
   prints "nodes"
-  for part in "<h1>$file.haar</h1>" "Kept against error" "By level" Provenance; do
+  for part in "<h1>$file.haar</h1>" "Error by coefficients kept" "By level" Provenance; do
     holds "$part"
   done
   lacks "Worst maps"

@@ -22,7 +22,7 @@ struct Crop {
   int height = 0;
 };
 
-constexpr int shown_at_most = 128;
+constexpr int largest_shown_side = 128;
 
 image::Picture cropped(const image::Picture& picture, const Crop& crop) {
   image::Picture result(crop.width, crop.height);
@@ -32,7 +32,7 @@ image::Picture cropped(const image::Picture& picture, const Crop& crop) {
   return result;
 }
 
-float root_with_sign(float value) { return std::copysign(std::sqrt(std::abs(value)), value); }
+float signed_root(float value) { return std::copysign(std::sqrt(std::abs(value)), value); }
 
 bool hit(const PairResult& pair, int x, int y) { return pair.hit[pair.reference.offset(x, y) / 3]; }
 
@@ -50,12 +50,12 @@ float floor_of(const PairResult& pair) {
 }
 
 Crop crop_of(const image::Picture& picture) {
-  const int width = std::min(shown_at_most, picture.width);
-  const int height = std::min(shown_at_most, picture.height);
+  const int width = std::min(largest_shown_side, picture.width);
+  const int height = std::min(largest_shown_side, picture.height);
   return {(picture.width - width) / 2, (picture.height - height) / 2, width, height};
 }
 
-/// Rows of one sampler and kind of points, of one mode; both modes if it is empty.
+/// Rows of one sampler, kind of points and mode; of both modes if `mode` is empty.
 std::vector<const Row*> rows_of(const PairResult& pair, const std::string& sampler,
                                 const std::string& points, const std::string& mode) {
   std::vector<const Row*> rows;
@@ -190,12 +190,12 @@ std::string error_uri(const PairResult& pair, const image::Picture& picture) {
   image::Picture map(crop.width, crop.height);
   for (int y = 0; y < crop.height; ++y)
     for (int x = 0; x < crop.width; ++x) {
-      const float truth = luminance(pair.reference.at(crop.x + x, crop.y + y));
-      const float error = luminance(picture.at(crop.x + x, crop.y + y)) - truth;
-      const float scale = std::max(std::hypot(truth, floor), 1e-30F);
+      const float expected = luminance(pair.reference.at(crop.x + x, crop.y + y));
+      const float error = luminance(picture.at(crop.x + x, crop.y + y)) - expected;
+      const float scale = std::max(std::hypot(expected, floor), 1e-30F);
       map.set(x, y,
               hit(pair, crop.x + x, crop.y + y)
-                  ? image::false_colour(std::clamp(root_with_sign(error / scale), -1.0F, 1.0F))
+                  ? image::false_colour(std::clamp(signed_root(error / scale), -1.0F, 1.0F))
                   : Rgb::Ones());
     }
   return png_uri(map);

@@ -28,7 +28,7 @@ const Row* row_of(const Verdict& verdict, const std::string& sampler) {
   return place == verdict.rows.end() ? nullptr : *place;
 }
 
-void judge(Verdict& verdict) {
+void find_winner(Verdict& verdict) {
   verdict.winner =
       *std::min_element(verdict.rows.begin(), verdict.rows.end(),
                         [](const Row* a, const Row* b) { return a->relmse < b->relmse; });
@@ -38,7 +38,7 @@ void judge(Verdict& verdict) {
     verdict.product_over_mis = mis->relmse / product->relmse;
 }
 
-/// Verdicts of one mode by pair, each pair's by rising level.
+/// Verdicts of one mode by pair, in increasing order of budget or samples.
 using Pairs = std::vector<std::vector<const Verdict*>>;
 
 std::string pair_key(const Row& row) {
@@ -91,14 +91,14 @@ std::string winners_table(const Plan& plan, const Pairs& pairs, const std::strin
   return table({groups, head}, rows);
 }
 
-/// How a sampler does over many verdicts.
+/// Summary of a sampler over all pairs.
 struct Standing {
-  double log_ratio = 0; ///< summed: error over that of the base
+  double log_ratio = 0; ///< sum of log(error / error of the base)
   int count = 0;
   int wins = 0;
 };
 
-/// At the last level of every pair.
+/// At the largest budget or number of samples of every pair.
 std::map<std::string, Standing> standings(const Pairs& pairs, const std::string& base) {
   std::map<std::string, Standing> result;
   for (const auto& pair : pairs) {
@@ -155,41 +155,43 @@ std::string standings_table(const Plan& plan, const Pairs& time, const Pairs& sa
 std::string overview_html(const Plan& plan, const std::vector<Verdict>& verdicts) {
   const Pairs time = pairs_of(verdicts, "equal-time");
   const Pairs samples = pairs_of(verdicts, "equal-samples");
-  return "<h2>All pairs</h2>\n<p>Geometric mean over the pairs of each sampler's error in units "
-         "of that of " +
+  return "<h2>All pairs</h2>\n<p>Geometric mean over the pairs of each sampler's error relative "
+         "to that of " +
          renderer::sampler_name(plan.samplers.front()) +
-         ", and how often it wins, at the largest budget and number of samples.</p>\n" +
+         ", and the number of pairs in which it has the smallest error, at the largest budget and "
+         "number of samples.</p>\n" +
          standings_table(plan, time, samples) +
-         "<h3>Winners at equal time</h3>\n<p>mis ÷ product: how many times larger the error of "
-         "mis is.</p>\n" +
+         "<h3>Winners at equal time</h3>\n<p>mis ÷ product: the error of mis divided by that of "
+         "product.</p>\n" +
          winners_table(plan, time, "equal-time") + "<h3>Winners at equal samples</h3>\n" +
          winners_table(plan, samples, "equal-samples");
 }
 
-constexpr const char* definitions = R"(<h2>What the figures are</h2>
+constexpr const char* definitions = R"(<h2>Definitions</h2>
 <ul>
 <li>All errors are of luminance, over the pixels that hit an object. With x a pixel, r its
 reference and ε = (1 % of the mean of r)²: <b>relMSE</b> is the mean of (x − r)² / (r² + ε) over
-pixels and seeds, less the reference's own share, which is estimated from the spread of its
+pixels and seeds, minus the error of the reference itself, which is estimated from the spread of its
 independent runs; ± is the standard error over the seeds.</li>
-<li><b>Variance of a sample</b>: the mean of spp · Var / (r² + ε), Var being the variance of the
-pixel's mean as estimated within a run, which supposes independent samples; so it tells how well
-directions are chosen, apart from how evenly points are spread.</li>
+<li><b>Variance of a sample</b>: the mean of spp · Var / (r² + ε), where Var is the variance of the
+pixel's mean as estimated within a run, assuming independent samples; it measures the choice of
+directions, not the distribution of the points.</li>
 <li><b>Mean ÷ reference</b>: the sum of all pixels over that of the reference, with its standard
-error; red where it is off by more than four of them. Samplers that miss rare bright events seem
-darker and surer than they are. Those tagged biased do not converge to the reference.</li>
-<li><b>Slope</b> of log relMSE over log spp: −1 where errors fall as 1/N.</li>
-<li><b>Time</b> is CPU time summed over threads, the least of the seeds' runs, each pixel's
-preparation included. <b>ns per sample</b> is what one more sample costs, <b>µs per pixel</b> the
-preparation. <b>Set-up</b> is done once for a scene after its files are read, <b>trees</b> once for
-a BRDF or probe; neither counts in the comparison at equal time.</li>
-<li><b>Equal time</b>: the budget is what the first sampler of the table takes for a number of
-samples, or as given; every other sampler gets the samples that fit, found from its own measured
-costs, and at least one. Its true time stands beside.</li>
+error; red where it differs from 1 by more than four standard errors. Samplers that miss rare bright
+events appear darker and less noisy than they are. Samplers tagged biased do not converge to the
+reference.</li>
+<li><b>Slope</b> of log relMSE over log spp: −1 where errors decrease as 1/N.</li>
+<li><b>Time</b> is CPU time summed over threads, the minimum over the seeds, with the preparation of
+each pixel. <b>ns per sample</b> is the cost of one more sample, <b>µs per pixel</b> the preparation.
+<b>Set-up</b> is done once for a scene after its files are read, <b>trees</b> once for a BRDF or
+probe; neither counts in the comparison at equal time.</li>
+<li><b>Equal time</b>: the budget is the time of the first sampler of the table for a number of
+samples, or as given; every other sampler takes the number of samples that fits by its own measured
+cost, at least one. The actual time is given beside it.</li>
 </ul>
 )";
 
-std::string seconds_or_spps(const Plan& plan) {
+std::string budgets_text(const Plan& plan) {
   std::string text;
   for (const int spp : plan.spps)
     text += (text.empty() ? "" : ", ") + std::to_string(spp);
@@ -203,17 +205,17 @@ std::string settings(const Plan& plan, const std::vector<PairResult>& pairs) {
   std::string html = "<p>" + escaped(version_text()) + ". " + std::to_string(plan.samplers.size()) +
                      " samplers, " + std::to_string(plan.brdfs.size()) + " BRDFs, " +
                      std::to_string(plan.probes.size()) + " probes, " +
-                     std::to_string(plan.scenes.size()) + " scenes. " + seconds_or_spps(plan) +
-                     "; " + std::to_string(plan.seeds) + " seeds from " +
-                     std::to_string(plan.seed) + "; film of " + escaped(plan.size) +
-                     " pixels; estimator " + renderer::estimator_name(plan.render.estimator) + ".";
+                     std::to_string(plan.scenes.size()) + " scenes. " + budgets_text(plan) + "; " +
+                     std::to_string(plan.seeds) + " seeds from " + std::to_string(plan.seed) +
+                     "; film of " + escaped(plan.size) + " pixels; estimator " +
+                     renderer::estimator_name(plan.render.estimator) + ".";
   double noise = 0;
   for (const PairResult& pair : pairs)
     for (const Row& row : pair.rows)
       noise = std::max(noise, row.reference_relmse);
   return html + " Reference: " + renderer::sampler_name(plan.reference_sampler) + ", " +
          std::to_string(plan.reference_spp) + " Sobol points per pixel over " +
-         std::to_string(reference_runs) + " runs with seeds of their own, relMSE at most " +
+         std::to_string(reference_runs) + " runs with different seeds, relMSE at most " +
          number_html(noise) + ".</p>\n";
 }
 
@@ -229,12 +231,12 @@ std::vector<Verdict> verdicts_of(const std::vector<Row>& rows) {
       place = verdicts.insert(verdicts.end(), Verdict());
     place->rows.push_back(&row);
   }
-  std::for_each(verdicts.begin(), verdicts.end(), judge);
+  std::for_each(verdicts.begin(), verdicts.end(), find_winner);
   return verdicts;
 }
 
 tool::Report describe(const std::vector<Verdict>& verdicts) {
-  const bool rivals = std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict& verdict) {
+  const bool compared = std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict& verdict) {
     return std::isfinite(verdict.product_over_mis);
   });
   tool::Report report;
@@ -252,7 +254,7 @@ tool::Report describe(const std::vector<Verdict>& verdicts) {
         .add("winner", row.sampler)
         .add("claim", row.claim)
         .add("relmse", row.relmse);
-    if (rivals)
+    if (compared)
       line.add("product_over_mis", verdict.product_over_mis);
   }
   return report;

@@ -205,9 +205,10 @@ std::string lobes_html(const wavelet::TreeSet& set, const std::vector<wavelet::M
                                .append(set.info().cosine ? " cos θ, " : ", ")
                                .append(set.info().units == "sr^-1" ? "1/sr" : set.info().units);
   return "<h2>Lobes</h2>\n<p>Luminance along lines through the mirror direction, above the "
-         "horizon. What is less than a millionth of a figure's largest value, or negative, is "
-         "drawn as that. In the polar plot the normal is up, the mirror directions are to the "
-         "right, marked at the rim, and the viewer is to the left.</p>\n<div class=\"plots\">" +
+         "horizon. Values below a millionth of a figure's largest value, and negative values, are "
+         "drawn as that millionth. In the polar plot the normal is up, the mirror directions, "
+         "marked at the rim, are to the right, and the viewer is to the left.</p>\n<div "
+         "class=\"plots\">" +
          slice_plot(
              along,
              {"In the plane of incidence", "from the mirror direction, towards the normal", unit},

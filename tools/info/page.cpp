@@ -101,7 +101,8 @@ std::string atlas_html(const wavelet::TreeSet& set, const std::vector<wavelet::M
            " px, scaled to a mean of 0.18 and tone mapped.</p>\n" +
            picture_html(tool::tree_picture(set.tree(trees[0].column, trees[0].row), shown), "map");
   return "<h2>All maps</h2>\n<p>Each at " + pixels +
-         " px; columns run to the right and rows down, or a single row is folded to a square. "
+         " px; columns are arranged to the right and rows downwards; a single row is wrapped to a "
+         "square. "
          "Scaled to a mean of 0.18 and tone mapped.</p>\n" +
          picture_html(tool::atlas(set, shown), "all maps");
 }
@@ -119,10 +120,11 @@ std::string level_bars_html(const tool::TreeFigures& sum, std::size_t trees) {
   }
   return "<div class=\"plots\">" +
          html::bar_plot(counts,
-                        {"Coefficients that are not zero, and all that could be", "level",
+                        {"Nonzero coefficients, and the largest possible number", "level",
                          "coefficients (RGB triples)"},
                         "#4363d8") +
-         html::bar_plot(energies, {"Energy of the wavelets", "level", "share of all energy"},
+         html::bar_plot(energies,
+                        {"Energy of the coefficients", "level", "fraction of the total energy"},
                         "#2ca02c") +
          "</div>\n";
 }
@@ -133,10 +135,11 @@ std::string error_curve_html(const wavelet::TreeSet& set,
       .label = {}, .style = {.colour = "#d4002a", .marker = html::no_marker}, .points = {}};
   for (const KeptPoint& point : error_curve(set, trees))
     series.points.emplace_back(static_cast<double>(point.kept), point.error);
-  return "<h2>Kept against error</h2>\n<p>What would be left of these trees if only so many of "
-         "their coefficients were kept, the largest by L2 of all trees together; the averages "
-         "always stay. The error is the L2 of what is left out over the L2 of all, and falls to "
-         "nothing when all are kept, which has no place here.</p>\n<div class=\"plots\">" +
+  return "<h2>Error by coefficients kept</h2>\n<p>Relative L2 error of these trees if only a "
+         "number "
+         "of their coefficients were kept, those with the largest L2 norm of all trees; averages "
+         "are always kept. The point of error 0, where all are kept, is not shown.</p>\n<div "
+         "class=\"plots\">" +
          html::log_plot({series}, {"Error by coefficients kept", "coefficients kept (RGB triples)",
                                    "relative L2 error"}) +
          "</div>\n";

@@ -47,7 +47,7 @@ double relative_l2(const std::vector<ComparedMap>& maps) {
   return sum.relative_l2();
 }
 
-/// The worst first.
+/// Keeps the maps with the largest error, in decreasing order.
 void keep_worst(std::vector<ComparedMap>& maps) {
   std::stable_sort(maps.begin(), maps.end(), [](const ComparedMap& a, const ComparedMap& b) {
     return a.difference.squared_error > b.difference.squared_error;
@@ -55,7 +55,7 @@ void keep_worst(std::vector<ComparedMap>& maps) {
   maps.resize(std::min(maps.size(), shown_maps));
 }
 
-/// Indices are those of A.
+/// Column and row in A.
 std::string name_of(const tool::ComparedSets& sets, const MapPlace& place) {
   return std::to_string(sets.first_a.column + place.column) + "," +
          std::to_string(sets.first_a.row + place.row);
@@ -93,11 +93,12 @@ std::string pictures(const tool::ComparedSets& sets, const MapPlace& place) {
 std::string worst_maps_html(const tool::CompareInput& input) {
   const tool::ComparedSets sets = tool::open_compared(input);
   std::vector<ComparedMap> maps = compare_all(sets);
-  std::string html = "<h2>Worst maps</h2>\n<p>Against " +
+  std::string html = "<h2>Worst maps</h2>\n<p>Compared with " +
                      html::escaped(base_name(input.reference)) +
                      ": relative L2 error of all maps " + html::number_html(relative_l2(maps)) +
-                     ". Those that differ most by L2, original and reconstruction with one "
-                     "exposure; the difference is of luminance, its colours as its legend tells.";
+                     ". The maps with the largest L2 error: original and reconstruction with "
+                     "the same exposure, and the difference of luminance in the colours of its "
+                     "legend.";
   for (const std::string& note : sets.notes)
     html += " Note: " + html::escaped(note) + ".";
   keep_worst(maps);
