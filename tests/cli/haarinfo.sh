@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# haarinfo --html: pages about sets of every kind, what they hold, and that they hold nothing else.
+# haarinfo --html: pages about sets of every kind, their sections, and that they are self-contained.
 source "$(dirname "$0")/lib.sh" "$1"
 
 "$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.1 --roughness 0.4 -q -o ggx.binary >/dev/null

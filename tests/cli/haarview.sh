@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# haarview: frames against the same trees on the CPU, level by level, and its misuse.
+# haarview: frames compared with the same trees on the CPU, level by level, and errors.
 source "$(dirname "$0")/lib.sh" "$1"
 source "$(dirname "$0")/view_lib.sh"
 
@@ -24,7 +24,7 @@ scene scene.json '{"type": "sphere", "center": [0, -0.7, 1.5], "radius": 0.3, "m
 
 needs_egl brdf.haar --size 8x8
 
-# agrees FRAMES…: at full level within 1 % of the CPU, at level 0 far from it, at finer ones nearer
+# agrees FRAMES…: at full resolution within 1 % of the CPU, with an error that decreases with the level
 agrees() {
   expect 0 haarview "$@" --level 13 --compare --repeat 1 --json --frame frame.exr
   command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
@@ -37,13 +37,13 @@ agrees brdf.haar --size 64x64 --light-position=-1,1,3
 agrees scene.json --light-direction=-1,2,2
 agrees scene.json --light-position 0.5,2,3 --irradiance 9,6,3
 
-# the level that pixels need is nearly the full one where pixels are small
+# with small pixels the level that they need is nearly the full resolution
 expect 0 haarview brdf.haar --size 256x256 --compare --repeat 1 --json --frame frame.exr
 mapfile -t error < <(errors)
 number "${error[0]} < 0.1 && ${error[0]} < ${error[5]}"
 
-# environment FRAMES…: at the finest level within 2 % of a picture by product integrals, at coarse ones
-# farther from it the coarser, with fewer accesses
+# environment: at the finest level within 2 % of a picture by product integrals, with an error that decreases and
+# accesses that increase with the level
 sed -i 's/"light": {.*}/"light": {"probe": "sky.hdr", "rotate": 70, "background": false}/' scene.json
 "$bin/probesynth" --scene sun-sky --size 128 -q -o sky.hdr >/dev/null
 "$bin/probe2maps" sky.hdr --size 256 -q -o sky.haar >/dev/null
@@ -56,7 +56,7 @@ number "${error[0]} <= 0.02 && ${error[-1]} <= 0.02"
 number "${error[1]} > 0.2 && ${error[3]} < ${error[1]} && ${error[5]} < ${error[3]}"
 number "${count[0]} < ${count[2]} && ${count[2]} < ${count[4]} && ${count[4]} <= ${count[-1]}"
 
-# trees of a light do as well as the probe they were made of; --compare makes the same picture
+# trees of a light instead of the probe they were made from; --compare computes the same picture
 expect 0 haarview brdf.haar --size 32x32 --probe sky.haar --compare --repeat 1 --json --frame trees.exr
 mapfile -t error < <(errors)
 number "${error[0]} <= 0.02"
@@ -87,18 +87,18 @@ else
   echo "skipped: pages are not looked at, since there is no chromium, which install_packages.sh leaves out for its size"
 fi
 
-# what is far away takes fewer accesses
+# small pictures take fewer accesses
 near=$("$bin/haarview" brdf.haar --size 256x256 -q --frame frame.exr | sed -n 's/accesses per pixel *//p')
 distant=$("$bin/haarview" brdf.haar --size 16x16 -q --frame frame.exr | sed -n 's/accesses per pixel *//p')
 number "$distant < 0.8 * $near"
 
-# a .png shows as much; frames are the same each time
+# a .png; frames are reproducible
 expect 0 haarview brdf.haar --size 32x32 --frame frame.png
 "$bin/haarview" brdf.haar --size 64x64 -q --frame once.exr >/dev/null
 "$bin/haarview" brdf.haar --size 64x64 -q --frame twice.exr >/dev/null
 same once.exr twice.exr
 
-# what goes wrong
+# errors
 expect 2 haarview brdf.haar --frame picture.jpg
 expect 2 haarview brdf.haar --frame picture.exr --level 14
 expect 2 haarview brdf.haar --frame picture.exr --light-direction 0,0,0

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# haarview of transfer: frames against haarrelight apply, level by level, and its misuse.
+# haarview of transfer: frames compared with haarrelight apply, level by level, and errors.
 source "$(dirname "$0")/lib.sh" "$1"
 source "$(dirname "$0")/view_lib.sh"
 
@@ -23,7 +23,7 @@ END
 
 needs_egl light.haar
 
-# agrees CHANGE…: with apply of the same change within 1 %, nearer the finer the level
+# agrees CHANGE…: within 1 % of apply with the same change, with an error that decreases with the level
 agrees() {
   "$bin/haarrelight" apply light.haar "$@" -q -o applied.exr >/dev/null
   expect 0 haarview light.haar "$@" --reference applied.exr --repeat 1 --json --frame frame.exr
@@ -41,7 +41,7 @@ agrees --light sun-sky.haar
 agrees
 cmp -s frame.exr turned.exr && fail "--rotate changes nothing"
 
-# --compare makes the same picture itself; that of another turn is far from the frame
+# --compare computes the same picture; that of another rotation differs
 expect 0 haarview light.haar --rotate 70,0,0 --compare --repeat 1 --json --frame frame.exr
 mapfile -t error < <(errors)
 number "${error[0]} <= 0.01"
@@ -50,7 +50,7 @@ expect 0 haarview light.haar --rotate 160,0,0 --reference turned.exr --repeat 1 
 mapfile -t error < <(errors)
 number "${error[0]} > 0.1"
 
-# --level draws what the comparison says of it, with fewer accesses
+# --level has the error that the comparison reports, with fewer accesses
 expect 0 haarview light.haar --level 2 --compare --repeat 1 --json --frame frame.exr
 mapfile -t error < <(errors)
 number "${error[0]} == ${error[3]}"
@@ -69,7 +69,7 @@ expect 3 haarview elsewhere/packed.haar --frame frame.exr
 expect 0 haarview light.haar --frame frame.png
 rm -r elsewhere bare.json frame.png
 
-# what goes wrong
+# errors
 expect 3 haarview object.haar --frame picture.exr
 says "was built with --vary object:1; expected --vary light"
 expect 2 haarview object.haar --frame picture.exr --rotate 10,0,0

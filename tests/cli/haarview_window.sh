@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# haarview's window on a screen of its own: turned, saved, beside another, and with files rewritten under it.
+# haarview's window on a virtual screen: orbit, screenshots, two panes, and files that are rewritten.
 source "$(dirname "$0")/lib.sh" "$1"
 source "$(dirname "$0")/view_lib.sh"
 
@@ -11,7 +11,7 @@ done
 "$bin/probesynth" --scene studio --size 32 -q -o studio.hdr >/dev/null
 inputs="brdf.binary brdf.haar other.binary other.haar studio.hdr"
 
-# what goes wrong without a screen
+# errors without a screen
 unset DISPLAY WAYLAND_DISPLAY
 expect 4 haarview brdf.haar
 if grep -q "left out of this build" "$log/err"; then
@@ -74,7 +74,7 @@ END
 }
 number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
 
-# saved NAME ARGUMENTS…: a picture of the window without its controls
+# saved NAME ARGUMENTS…: a screenshot of the window without its controls
 saved() {
   local name=$1
   shift
@@ -110,7 +110,7 @@ else
   echo "skipped: pictures are not compared, as python3 is not installed"
 fi
 
-# watched WAY NAME: a file is rewritten in that way again and again until the window has tried to read it once
+# watched WAY NAME: a file is rewritten in that way repeatedly until the window has tried to reload it once
 watched() {
   cp brdf.haar watched.haar
   timeout 60 "$bin/haarview" watched.haar --size 120x90 --no-panel --watch --reloads 1 --frames 1 --json \
