@@ -73,7 +73,7 @@ rm -r elsewhere bare.json frame.png
 expect 3 haarview object.haar --frame picture.exr
 says "lets object:1 vary; this takes one built with --vary light"
 expect 2 haarview object.haar --frame picture.exr --rotate 10,0,0
-says "--vary light"
+says "was built with --vary object:1, not light"
 for option in "--size 8x8" "--environment" "--probe studio.hdr" "--light-direction 0,0,1" "--export page.html"; do
   # shellcheck disable=SC2086
   expect 2 haarview light.haar --frame picture.exr $option
