@@ -1,6 +1,6 @@
 // haarview: shows stored trees, reconstructed in a fragment shader.
-#include <support/program.h>
-#include <support/words.h>
+#include <support/arguments.h>
+#include <support/tool.h>
 
 #include <view/commands.h>
 
@@ -32,8 +32,8 @@ void declare_light(tool::Tool& app, Options& options) {
       options.probe, "--probe", "FILE",
       "Probe image or trees of a light that replaces the scene's; implies --environment");
   app.value(options.light_level, "--light-level",
-            "With --environment: store the light as 2^N squares a side [10; 8 for --export alone]",
-            2, 11);
+            "With --environment: store the light as 2^N squares a side [10; 8 for --html alone]", 2,
+            11);
   app.value(
       options.tolerance, "--tolerance",
       "With --environment: split a square of the light while its estimated error exceeds this "
@@ -91,9 +91,10 @@ void declare(tool::Tool& app, Options& options) {
   app.optional_output(options.frame, "--frame", "OUT.exr|.png",
                       "Write a picture instead of showing a window; a .png is tone-mapped");
   app.optional_output(
-      options.page, "--export", "PAGE.html",
+      options.page, "--html", "PAGE.html",
       "Write an interactive page for browsers with WebGL 2 instead, in a single file; with "
       "--compare its #check compares as well");
+  app.alias("--export", "--html");
   app.text(options.size, "--size", "WxH", "Size in pixels [the scene's, or 256x256]");
   app.value(options.level, "--level",
             "Level of the trees for all pixels, 13 for full resolution [the level that each pixel "
@@ -120,9 +121,9 @@ void check_window(const tool::Tool& app, const Options& options) {
     refuse(app,
            {"--against", "--material", "--watch", "--no-panel", "--screenshot", "--frames",
             "--turn", "--reloads"},
-           "needs a window, without --frame and --export");
+           "needs a window, without --frame and --html");
   else
-    refuse(app, {"--repeat", "--compare", "--reference"}, "needs --frame or --export");
+    refuse(app, {"--repeat", "--compare", "--reference"}, "needs --frame or --html");
   if (!options.script.frames)
     refuse(app, {"--screenshot", "--turn", "--reloads"}, "needs --frames");
   if (options.script.reloads > 0 && !options.watch)
@@ -167,8 +168,8 @@ int view_input(const tool::Tool& app, Options& options) {
   }
   refuse(app,
          {"--size", "--light-direction", "--light-position", "--irradiance", "--environment",
-          "--probe", "--light-level", "--tolerance", "--export", "--against", "--material",
-          "--watch", "--reloads"},
+          "--probe", "--light-level", "--tolerance", "--html", "--against", "--material", "--watch",
+          "--reloads"},
          "does not apply to transfer; --rotate and --light change its light");
   return view_transfer(app, options);
 }
@@ -176,8 +177,10 @@ int view_input(const tool::Tool& app, Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "haarview",
-                           "Shows stored trees with OpenGL in a window, a picture or a page; a "
-                           "fragment shader reconstructs them at the level that each pixel needs.",
-                           declare, view_input);
+  return tool::run_program(
+      argc, argv,
+      tool::command("haarview",
+                    "Shows stored trees with OpenGL in a window, a picture or a page; a fragment "
+                    "shader reconstructs them at the level that each pixel needs.",
+                    declare, view_input));
 }

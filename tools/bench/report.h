@@ -3,7 +3,7 @@
 
 #include <bench/measure.h>
 #include <bench/plan.h>
-#include <bench/rows.h>
+#include <bench/results.h>
 
 #include <html/plot.h>
 

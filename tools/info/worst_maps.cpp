@@ -2,7 +2,7 @@
 
 #include <html/page.h>
 
-#include <support/compare_picture.h>
+#include <support/compare.h>
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/file/input_file.h>

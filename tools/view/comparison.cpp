@@ -1,6 +1,6 @@
 #include <view/comparison.h>
 
-#include <support/words.h>
+#include <support/arguments.h>
 
 #include <image/image_exr.h>
 #include <image/png.h>
