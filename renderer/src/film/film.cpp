@@ -2,7 +2,7 @@
 
 namespace haarlight::renderer {
 
-std::string film_size_problem(long long width, long long height) {
+std::string validate_film_size(long long width, long long height) {
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   if (width < 1 || height < 1)
     return "a film of " + size + " pixels has no area";

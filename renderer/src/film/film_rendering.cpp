@@ -39,7 +39,7 @@ public:
 
   TileCost render(int x0, int y0, const Pass& pass) {
     const double start = thread_cpu_seconds();
-    m_shader->forget();
+    m_shader->reset();
     const int width = std::min(tile_side, m_film.width - x0);
     for (int y = y0; y < std::min(y0 + tile_side, m_film.height); ++y)
       for (int i = 0; i < width; ++i) // to and fro: each pixel beside the last

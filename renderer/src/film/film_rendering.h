@@ -37,7 +37,7 @@ public:
   virtual ~PixelShader() = default;
 
   /// Forgets the pixels before: what comes depends on the pixels to come alone.
-  virtual void forget() = 0;
+  virtual void reset() = 0;
 
   /// Adds a pass's samples of reflected light to the pixel's sums.
   virtual void shade(const PixelHit& seen, const Pass& pass, PixelSums& sums) = 0;

@@ -20,7 +20,7 @@ public:
                const RenderFactories& factories)
       : m_estimator(options.estimator), m_light(scene, options, factories) {}
 
-  void forget() override { m_light.forget(); }
+  void reset() override { m_light.reset(); }
 
   void shade(const PixelHit& seen, const Pass& pass, PixelSums& sums) override {
     m_light.prepare(seen, m_cost);
@@ -74,7 +74,7 @@ std::string estimator_name(Estimator estimator) {
   return estimator_names[static_cast<std::size_t>(estimator)].first;
 }
 
-std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator) {
+std::optional<std::string> validate(SamplerKind sampler, Estimator estimator) {
   if (estimator == Estimator::Bidirectional && !traits(sampler).follows_product)
     return "the bidirectional estimator needs directions that follow the product: --sampler "
            "product or "

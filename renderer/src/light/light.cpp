@@ -63,12 +63,12 @@ void Light::radiance(std::span<const Vec3> directions, std::span<Rgb> out) const
     out[i] = radiance(directions[i]);
 }
 
-void Light::need_tree() {
+void Light::require_tree() {
   if (!m_map)
     m_map.emplace(probe::ProbeMaps(*m_probe, probe::MapOptions{}, m_source));
 }
 
-void Light::need_distribution() {
+void Light::require_distribution() {
   if (m_probe && !m_distribution)
     m_distribution.emplace(*m_probe);
 }

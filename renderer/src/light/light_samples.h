@@ -15,7 +15,7 @@ public:
   LightSamples(const LoadedScene& scene, const RenderOptions& options,
                const RenderFactories& factories);
 
-  void forget();
+  void reset();
 
   /// Turns to a point. `seen` must live until the next call.
   void prepare(const PixelHit& seen, ShadingCost& cost);

@@ -22,8 +22,9 @@ std::shared_ptr<const TreeTable> load_lobes(const std::string& path) {
   return lobes;
 }
 
-std::unique_ptr<Reflectance> make_truth(const MaterialDescription& description, brdf::Lookup lookup,
-                                        const std::shared_ptr<const TreeTable>& lobes) {
+std::unique_ptr<Reflectance>
+make_source_reflectance(const MaterialDescription& description, brdf::Lookup lookup,
+                        const std::shared_ptr<const TreeTable>& lobes) {
   if (description.lambert)
     return lambert_reflectance(*description.lambert);
   if (description.model)
@@ -48,26 +49,26 @@ Material::Material(const MaterialDescription& description, brdf::Lookup lookup)
     m_rolls.emplace(description.table, wavelet::SetKind::Brdf, wavelet::Check::WhenUsed);
     require_cosine(description.table, *m_rolls);
   }
-  m_truth = make_truth(description, lookup, m_lobes);
+  m_source_reflectance = make_source_reflectance(description, lookup, m_lobes);
 }
 
-void Material::need_trees() {
+void Material::require_trees() {
   if (m_pyramid)
     return;
   if (!m_lobes)
-    m_lobes = std::make_shared<TreeTable>(*m_truth->maps());
+    m_lobes = std::make_shared<TreeTable>(*m_source_reflectance->maps());
   m_pyramid.emplace(m_lobes->trees());
 }
 
-void Material::need_lobe() {
+void Material::require_lobe() {
   if (model() == nullptr)
-    need_trees();
+    require_trees();
 }
 
-void Material::need_roll_table() {
+void Material::require_roll_table() {
   if (m_rolls)
     return;
-  if (const auto maps = m_truth->roll_maps())
+  if (const auto maps = m_source_reflectance->roll_maps())
     m_rolls.emplace(*maps);
 }
 

@@ -24,16 +24,16 @@ public:
         m_vertex(scene, emitters), m_tracer(scene, emitters, path) {
     m_counts.lights = path.light_samples;
     if (options.sampler == SamplerKind::Mis) {
-      m_counts.departures = path.light_samples;
+      m_counts.bsdf_samples = path.light_samples;
       return;
     }
     m_counts.shares_distant = false;
     m_light.emplace(scene, m_options, factories);
   }
 
-  void forget() override {
+  void reset() override {
     if (m_light)
-      m_light->forget();
+      m_light->reset();
   }
 
   void shade(const PixelHit& seen, const Pass& pass, PixelSums& sums) override {
@@ -41,17 +41,17 @@ public:
     m_values.assign(pass.count, Rgb::Zero());
     m_pdfs.assign(pass.count, 0);
     m_techniques.assign(pass.count, Technique::First);
-    m_vertex.arrive(seen.hit, seen.wo, m_counts);
+    m_vertex.set_hit(seen.hit, seen.wo, m_counts);
     add_light(seen, pass, points, sums);
     m_vertex.add_emitters(points.at(1, pass.first), m_values);
     if (goes_on(seen.hit.object))
-      add_departures(pass, points);
+      add_bsdf_samples(pass, points);
     for (std::size_t i = 0; i < pass.count; ++i)
       sums.add(m_values[i], true, m_pdfs[i], m_techniques[i]);
   }
 
 private:
-  /// Whether departures find anything that has not been counted already.
+  /// Whether bsdf_samples find anything that has not been counted already.
   bool goes_on(int object) const {
     return !m_light || ((m_path.depth != 1 || m_shines) && m_scene.shapes().may_occlude(object));
   }
@@ -89,19 +89,19 @@ private:
       m_values[i / each] += value;
   }
 
-  /// All departures look for light; one of each path's goes on.
-  void add_departures(const Pass& pass, const PathPoints& points) {
-    const auto each = static_cast<std::size_t>(m_counts.departures);
-    m_departures.resize(pass.count * each);
-    m_vertex.depart(points.at(1, pass.first), m_departures);
-    for (std::size_t i = 0; i < m_departures.size(); ++i) {
-      const Departure& departure = m_departures[i];
-      if (!(departure.weight > 0).any())
+  /// All bsdf_samples look for light; one of each path's goes on.
+  void add_bsdf_samples(const Pass& pass, const PathPoints& points) {
+    const auto each = static_cast<std::size_t>(m_counts.bsdf_samples);
+    m_bsdf_samples.resize(pass.count * each);
+    m_vertex.sample_bsdf(points.at(1, pass.first), m_bsdf_samples);
+    for (std::size_t i = 0; i < m_bsdf_samples.size(); ++i) {
+      const BsdfSample& bsdf_sample = m_bsdf_samples[i];
+      if (!(bsdf_sample.weight > 0).any())
         continue;
-      const Found found = m_vertex.look(departure);
-      m_values[i / each] += departure.weight * found.light / static_cast<float>(each);
+      const PathStep found = m_vertex.look(bsdf_sample);
+      m_values[i / each] += bsdf_sample.weight * found.light / static_cast<float>(each);
       if (i % each == 0 && found.hit)
-        m_values[i / each] += m_tracer.follow(*found.hit, departure, points,
+        m_values[i / each] += m_tracer.follow(*found.hit, bsdf_sample, points,
                                               pass.first + static_cast<std::uint32_t>(i / each));
     }
   }
@@ -118,7 +118,7 @@ private:
   std::vector<float> m_pdfs;           ///< mean of its light samples'
   std::vector<Technique> m_techniques; ///< of its light samples
   std::vector<std::uint8_t> m_visible; ///< of all light samples
-  std::vector<Departure> m_departures;
+  std::vector<BsdfSample> m_bsdf_samples;
 };
 
 } // namespace

@@ -11,21 +11,22 @@ constexpr std::uint32_t roulette_dimension = 8; ///< above those of PathVertex
 
 } // namespace
 
-Rgb PathTracer::follow(Hit at, Departure departure, const PathPoints& points, std::uint32_t path) {
+Rgb PathTracer::follow(Hit at, BsdfSample bsdf_sample, const PathPoints& points,
+                       std::uint32_t path) {
   Rgb sum = Rgb::Zero();
-  Rgb throughput = departure.weight;
+  Rgb throughput = bsdf_sample.weight;
   for (int vertex = 2; m_options.depth == 0 || vertex <= m_options.depth; ++vertex) {
     const VertexPoints source = points.at(vertex, path);
-    m_vertex.arrive(at, -departure.direction);
+    m_vertex.set_hit(at, -bsdf_sample.direction);
     Rgb direct = Rgb::Zero();
     m_vertex.add_light(source, std::span(&direct, 1));
     m_vertex.add_emitters(source, std::span(&direct, 1));
     sum += throughput * direct;
-    m_vertex.depart(source, std::span(&departure, 1));
-    throughput *= departure.weight;
+    m_vertex.sample_bsdf(source, std::span(&bsdf_sample, 1));
+    throughput *= bsdf_sample.weight;
     if (!(throughput > 0).any() || !survives(vertex, source, throughput))
       break;
-    const Found found = m_vertex.look(departure);
+    const PathStep found = m_vertex.look(bsdf_sample);
     sum += throughput * found.light;
     if (!found.hit)
       break;

@@ -26,10 +26,10 @@ public:
 
   /// The light that comes back from a path's second vertex, times its weight so far.
   /// @param at        the second vertex
-  /// @param departure that led there
+  /// @param bsdf_sample that led there
   /// @param points    of the pixel
   /// @param path      the path's index among the pixel's
-  Rgb follow(Hit at, Departure departure, const PathPoints& points, std::uint32_t path);
+  Rgb follow(Hit at, BsdfSample bsdf_sample, const PathPoints& points, std::uint32_t path);
 
 private:
   bool survives(int vertex, const VertexPoints& points, Rgb& throughput) const;

@@ -8,7 +8,7 @@ enum Dimension : std::uint32_t { OfLight, OfLobe, OfEmitter, OfChoice };
 
 } // namespace
 
-void PathVertex::arrive(const Hit& hit, const Vec3& wo, const VertexCounts& counts) {
+void PathVertex::set_hit(const Hit& hit, const Vec3& wo, const VertexCounts& counts) {
   const Light& light = m_scene.light();
   m_counts = counts;
   m_hit = hit;
@@ -46,7 +46,8 @@ void PathVertex::add_light(const VertexPoints& points, std::span<Rgb> sums) {
     if (!(m_lights[i].pdf > 0) || !(reflected > 0).any())
       continue;
     if (!m_scene.shapes().occluded(leave(m_hit, light.to_world(m_directions[i]))))
-      sums[i / each] += reflected / (lights() * m_lights[i].pdf + departures() * m_samples[i].pdf);
+      sums[i / each] +=
+          reflected / (lights() * m_lights[i].pdf + bsdf_samples() * m_samples[i].pdf);
   }
 }
 
@@ -73,12 +74,12 @@ Rgb PathVertex::emitter_sample(const EmitterDirection& to) const {
     return Rgb::Zero();
   const Vec3 w = m_scene.light().to_light(to.direction);
   return m_material->evaluate(m_point, w) * m_scene.material_of(hit.object).emission() /
-         (lights() * pdf + departures() * m_lobe.pdf(w));
+         (lights() * pdf + bsdf_samples() * m_lobe.pdf(w));
 }
 
-void PathVertex::depart(const VertexPoints& points, std::span<Departure> out) {
+void PathVertex::sample_bsdf(const VertexPoints& points, std::span<BsdfSample> out) {
   m_points.resize(out.size());
-  points.fill(OfLobe, m_counts.departures, m_points);
+  points.fill(OfLobe, m_counts.bsdf_samples, m_points);
   m_samples.resize(out.size());
   m_lobe.sample(m_points, m_samples);
   evaluate(m_samples);
@@ -89,30 +90,30 @@ void PathVertex::depart(const VertexPoints& points, std::span<Departure> out) {
   }
 }
 
-Found PathVertex::look(const Departure& departure) const {
+PathStep PathVertex::look(const BsdfSample& bsdf_sample) const {
   Hit hit;
-  if (!m_scene.shapes().intersect(leave(m_hit, departure.direction), hit))
-    return {m_counts.shares_distant ? escaped(departure) : Rgb(Rgb::Zero()), std::nullopt};
-  Found found{met(departure, hit), hit};
-  if (hit.normal.dot(departure.direction) > 0)
+  if (!m_scene.shapes().intersect(leave(m_hit, bsdf_sample.direction), hit))
+    return {m_counts.shares_distant ? escaped(bsdf_sample) : Rgb(Rgb::Zero()), std::nullopt};
+  PathStep found{met(bsdf_sample, hit), hit};
+  if (hit.normal.dot(bsdf_sample.direction) > 0)
     found.hit->normal = -hit.normal;
   return found;
 }
 
-/// The share of the distant light seen along a departure that add_light() leaves to it.
-Rgb PathVertex::escaped(const Departure& departure) const {
+/// The share of the distant light seen along a bsdf_sample that add_light() leaves to it.
+Rgb PathVertex::escaped(const BsdfSample& bsdf_sample) const {
   const Light& light = m_scene.light();
-  const Vec3 w = light.to_light(departure.direction);
-  return light.radiance(w) * balance(departures() * departure.pdf, lights() * light.pdf(w));
+  const Vec3 w = light.to_light(bsdf_sample.direction);
+  return light.radiance(w) * balance(bsdf_samples() * bsdf_sample.pdf, lights() * light.pdf(w));
 }
 
-/// The share of what `hit` emits that add_emitters() leaves to a departure.
-Rgb PathVertex::met(const Departure& departure, const Hit& hit) const {
+/// The share of what `hit` emits that add_emitters() leaves to a bsdf_sample.
+Rgb PathVertex::met(const BsdfSample& bsdf_sample, const Hit& hit) const {
   const Rgb& emission = m_scene.material_of(hit.object).emission();
   if (m_emitters.empty() || !(emission > 0).any())
     return emission;
-  const float pdf = m_emitters.pdf(m_hit, departure.direction, hit);
-  return emission * balance(departures() * departure.pdf, lights() * pdf);
+  const float pdf = m_emitters.pdf(m_hit, bsdf_sample.direction, hit);
+  return emission * balance(bsdf_samples() * bsdf_sample.pdf, lights() * pdf);
 }
 
 } // namespace haarlight::renderer

@@ -13,7 +13,7 @@
 namespace haarlight::renderer {
 
 /// How a path leaves a vertex.
-struct Departure {
+struct BsdfSample {
   Vec3 direction = Vec3::UnitZ(); ///< unit, world
   Rgb weight = Rgb::Zero();       ///< f_r cos / pdf
   float pdf = 0;                  ///< sr⁻¹, of the reflectance's sampling
@@ -34,8 +34,8 @@ struct VertexPoints {
 /// Samples that a path takes at a vertex.
 struct VertexCounts {
   int lights = 1;             ///< of the distant light and of the emitters, each
-  int departures = 1;         ///< by the reflectance
-  bool shares_distant = true; ///< whether departures that escape count for the distant light; if
+  int bsdf_samples = 1;       ///< by the reflectance
+  bool shares_distant = true; ///< whether bsdf_samples that escape count for the distant light; if
                               ///< not, it is left to others alone
 };
 
@@ -43,8 +43,8 @@ struct VertexCounts {
 /// @param own,other numbers of samples times density
 inline float balance(float own, float other) { return own / (own + other); }
 
-/// What a departure comes upon.
-struct Found {
+/// What a bsdf_sample comes upon.
+struct PathStep {
   Rgb light = Rgb::Zero(); ///< its share of the light straight from there
   std::optional<Hit> hit;  ///< the surface, its normal on this side; nothing if it escapes
 };
@@ -57,29 +57,29 @@ public:
 
   /// @param hit its normal on the viewer's side
   /// @param wo  unit direction to the viewer, world
-  void arrive(const Hit& hit, const Vec3& wo, const VertexCounts& counts = {});
+  void set_hit(const Hit& hit, const Vec3& wo, const VertexCounts& counts = {});
 
-  /// Adds to each path's sum what its samples of the distant light by itself send back; departures
-  /// that escape have the rest.
+  /// Adds to each path's sum what its samples of the distant light by itself send back;
+  /// bsdf_samples that escape have the rest.
   void add_light(const VertexPoints& points, std::span<Rgb> sums);
 
-  /// Adds to each path's sum what its samples of the emitters send back; departures that meet one
+  /// Adds to each path's sum what its samples of the emitters send back; bsdf_samples that meet one
   /// have the rest.
   void add_emitters(const VertexPoints& points, std::span<Rgb> sums);
 
-  /// Draws departures by the reflectance, those of one path side by side.
-  void depart(const VertexPoints& points, std::span<Departure> out);
+  /// Draws bsdf_samples by the reflectance, those of one path side by side.
+  void sample_bsdf(const VertexPoints& points, std::span<BsdfSample> out);
 
-  /// Looks along one of the departures. Its light is to be averaged over those of a path.
-  Found look(const Departure& departure) const;
+  /// Looks along one of the bsdf_samples. Its light is to be averaged over those of a path.
+  PathStep look(const BsdfSample& bsdf_sample) const;
 
 private:
   void evaluate(std::span<const DirectionSample> samples);
   Rgb emitter_sample(const EmitterDirection& to) const;
-  Rgb escaped(const Departure& departure) const;
-  Rgb met(const Departure& departure, const Hit& hit) const;
+  Rgb escaped(const BsdfSample& bsdf_sample) const;
+  Rgb met(const BsdfSample& bsdf_sample, const Hit& hit) const;
   float lights() const { return static_cast<float>(m_counts.lights); }
-  float departures() const { return static_cast<float>(m_counts.departures); }
+  float bsdf_samples() const { return static_cast<float>(m_counts.bsdf_samples); }
 
   const LoadedScene& m_scene;
   const Emitters& m_emitters;

@@ -2,7 +2,7 @@
 // generating discrete random numbers with arbitrary frequency distributions"; made as by Vose 1991,
 // "A linear algorithm for generating random numbers with a given distribution").
 
-#include "samplers/kinds.h"
+#include "samplers/sampler_factories.h"
 
 #include <probe/probe.h>
 

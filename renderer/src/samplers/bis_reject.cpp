@@ -3,7 +3,7 @@
 // what is then missing is resampled from the candidates tried.
 
 #include "samplers/bidirectional_sampler.h"
-#include "samplers/kinds.h"
+#include "samplers/sampler_factories.h"
 
 #include <algorithm>
 

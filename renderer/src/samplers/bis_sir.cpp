@@ -2,7 +2,7 @@
 // 2005): of M candidates for each of N samples, all M N together, N are chosen.
 
 #include "samplers/bidirectional_sampler.h"
-#include "samplers/kinds.h"
+#include "samplers/sampler_factories.h"
 
 #include <limits>
 

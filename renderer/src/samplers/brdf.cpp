@@ -1,7 +1,7 @@
 // The reflectance alone.
 
-#include "samplers/kinds.h"
 #include "samplers/lobe_sampling.h"
+#include "samplers/sampler_factories.h"
 
 namespace haarlight::renderer {
 namespace {

@@ -1,6 +1,6 @@
 // The reflectance alone, factorised: Lawrence, Rusinkiewicz and Ramamoorthi 2004.
 
-#include "samplers/kinds.h"
+#include "samplers/sampler_factories.h"
 
 #include <brdf/factored_brdf.h>
 

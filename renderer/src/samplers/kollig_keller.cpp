@@ -2,8 +2,8 @@
 // Images"): Lloyd's algorithm on the sphere, weighted by luminance, with sites added step by step
 // where the energy is.
 
-#include "samplers/kinds.h"
-#include "samplers/lamps.h"
+#include "samplers/representative_lights.h"
+#include "samplers/sampler_factories.h"
 
 #include <wavelet/base/parallel.h>
 
@@ -33,7 +33,7 @@ public:
       m_blocks.push_back(bounds_of(b));
   }
 
-  std::vector<Lamp> lamps(std::size_t count) {
+  std::vector<RepresentativeLight> lights(std::size_t count) {
     Centroid whole;
     for (std::size_t i = 0; i < m_pixels.count(); ++i)
       whole.add(m_pixels.directions[i], m_pixels.luminance[i]);
@@ -44,7 +44,7 @@ public:
       relax(rounds_between_splits);
     relax(rounds_at_last);
     assign();
-    return lamps_of_regions(m_pixels, m_cells, m_sites.size());
+    return lights_of_regions(m_pixels, m_cells, m_sites.size());
   }
 
 private:
@@ -178,9 +178,9 @@ private:
 
 std::unique_ptr<SamplerFactory> make_kollig_keller_factory(const LoadedScene& scene,
                                                            const SamplerOptions& options) {
-  return lamp_factory(
+  return representative_light_factory(
       scene.light(),
-      [](const LightPixels& pixels, std::size_t count) { return Relaxation(pixels).lamps(count); },
+      [](const LightPixels& pixels, std::size_t count) { return Relaxation(pixels).lights(count); },
       options);
 }
 

@@ -1,6 +1,6 @@
 // The light alone: pixels of the probe by cdf inversion.
 
-#include "samplers/kinds.h"
+#include "samplers/sampler_factories.h"
 
 namespace haarlight::renderer {
 namespace {

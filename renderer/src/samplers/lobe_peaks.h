@@ -17,7 +17,7 @@ struct LobePeak {
 /// the reflectance itself: near the true maximum, but no bound that holds without exception.
 class LobePeaks {
 public:
-  /// After need_trees() of its materials. The scene must outlive this.
+  /// After require_trees() of its materials. The scene must outlive this.
   explicit LobePeaks(const LoadedScene& scene);
 
   /// Of the θ_r cell a point lies in.

@@ -1,8 +1,8 @@
 // Lamps for regions of equal energy (Debevec 2005, "A Median Cut Algorithm for Light Probe
 // Sampling").
 
-#include "samplers/kinds.h"
-#include "samplers/lamps.h"
+#include "samplers/representative_lights.h"
+#include "samplers/sampler_factories.h"
 
 #include <wavelet/base/trigonometry.h>
 
@@ -48,7 +48,7 @@ public:
       split_next();
   }
 
-  std::vector<Lamp> lamps() {
+  std::vector<RepresentativeLight> lights() {
     for (; !m_regions.empty(); m_regions.pop())
       m_finished.push_back(m_regions.top());
     // The last region takes what is dark altogether and makes no lamp.
@@ -57,7 +57,7 @@ public:
     for (std::size_t k = 0; k < m_finished.size(); ++k)
       for (std::size_t i = m_finished[k].begin; i < m_finished[k].end; ++i)
         labels[m_order[i]] = static_cast<std::uint32_t>(k);
-    return lamps_of_regions(m_pixels, labels, m_finished.size() + 1);
+    return lights_of_regions(m_pixels, labels, m_finished.size() + 1);
   }
 
 private:
@@ -140,9 +140,11 @@ private:
 
 std::unique_ptr<SamplerFactory> make_median_cut_factory(const LoadedScene& scene,
                                                         const SamplerOptions& options) {
-  return lamp_factory(
+  return representative_light_factory(
       scene.light(),
-      [](const LightPixels& pixels, std::size_t count) { return MedianCut(pixels, count).lamps(); },
+      [](const LightPixels& pixels, std::size_t count) {
+        return MedianCut(pixels, count).lights();
+      },
       options);
 }
 

@@ -1,7 +1,7 @@
 // Multiple importance sampling with the balance heuristic.
 
-#include "samplers/kinds.h"
 #include "samplers/mis_sampler.h"
+#include "samplers/sampler_factories.h"
 
 namespace haarlight::renderer {
 

@@ -1,8 +1,8 @@
 // Multiple importance sampling with the power heuristic, β = 2 (Veach and Guibas 1995; Veach 1997,
 // section 9.2.3).
 
-#include "samplers/kinds.h"
 #include "samplers/mis_sampler.h"
+#include "samplers/sampler_factories.h"
 
 #include <algorithm>
 

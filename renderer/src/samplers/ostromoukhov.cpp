@@ -6,8 +6,8 @@
 // on the way to it add up to; where n points are wanted per unit of the tiling's area, those
 // numbered below n are taken, which are spread evenly whatever n is.
 
-#include "samplers/kinds.h"
-#include "samplers/lamps.h"
+#include "samplers/representative_lights.h"
+#include "samplers/sampler_factories.h"
 
 #include <wavelet/square/sphere_map.h>
 
@@ -236,13 +236,13 @@ std::size_t pixel_at(const LightPixels& pixels, const Point& p) {
 }
 
 /// As many points as asked for, each for the solid angle that its density leaves it.
-std::vector<Lamp> lamps_of_tiling(const LightPixels& pixels, std::size_t count) {
+std::vector<RepresentativeLight> lights_of_tiling(const LightPixels& pixels, std::size_t count) {
   double energy = 0;
   for (const float y : pixels.luminance)
     energy += static_cast<double>(y) * static_cast<double>(pixels.solid_angle);
   const double share = energy / static_cast<double>(count);
   Tiling tiling(pixels);
-  std::vector<Lamp> lamps;
+  std::vector<RepresentativeLight> lamps;
   while (lamps.size() < count) {
     const std::optional<Point> p = tiling.next();
     if (!p)
@@ -258,7 +258,7 @@ std::vector<Lamp> lamps_of_tiling(const LightPixels& pixels, std::size_t count) 
 
 std::unique_ptr<SamplerFactory> make_ostromoukhov_factory(const LoadedScene& scene,
                                                           const SamplerOptions& options) {
-  return lamp_factory(scene.light(), lamps_of_tiling, options);
+  return representative_light_factory(scene.light(), lights_of_tiling, options);
 }
 
 } // namespace haarlight::renderer

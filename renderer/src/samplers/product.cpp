@@ -4,9 +4,9 @@
 // a square of the product that counts as hidden lets through then weighs no more than its
 // reflectance.
 
-#include "samplers/kinds.h"
 #include "samplers/light_mixture.h"
 #include "samplers/product_options.h"
+#include "samplers/sampler_factories.h"
 #include "visibility/hit_occlusion.h"
 
 #include <wavelet/product/adaptive_product.h>
@@ -26,13 +26,13 @@ public:
       : LightMixture(scene.light(), samples_each_of_light), m_builder(scene.light().tree()),
         m_options(options), m_occlusion(scene.shapes(), scene.light()) {}
 
-  void forget() override { m_follows = false; }
+  void reset() override { m_follows = false; }
 
   void prepare(const ShadingPoint& point, const Material& material) override {
     const wavelet::RotatedReflectance reflectance = material.reflectance(point);
     const bool shadowed = point.hit != nullptr;
     if (shadowed)
-      m_occlusion.turn_to(*point.hit);
+      m_occlusion.set_shading_point(*point.hit);
     const wavelet::AdaptiveOptions& options = shadowed ? m_options.shadowed : m_options.open;
     const wavelet::Occlusion* occlusion = shadowed ? &m_occlusion : nullptr;
     m_product = m_follows ? &m_builder.follow(reflectance, options, occlusion)

@@ -1,8 +1,8 @@
 // The paper's product: the stored trees of the nearest entries of two tables, multiplied and
 // cached.
 
-#include "samplers/kinds.h"
 #include "samplers/product_tree_sampler.h"
+#include "samplers/sampler_factories.h"
 #include "samplers/table_cells.h"
 
 #include <wavelet/base/error.h>

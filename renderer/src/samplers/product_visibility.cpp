@@ -2,10 +2,10 @@
 // whose squares, from the coarsest on, count for what geometry tells is seen of them, so that what
 // is hidden costs nothing and shadow edges are followed to fine squares.
 
-#include "samplers/kinds.h"
 #include "samplers/light_mixture.h"
 #include "samplers/product_options.h"
-#include "visibility/seen_squares.h"
+#include "samplers/sampler_factories.h"
+#include "visibility/conservative_visibility.h"
 
 #include <wavelet/product/adaptive_product.h>
 
@@ -23,12 +23,12 @@ public:
       : LightMixture(scene.light(), samples_each_of_light), m_builder(scene.light().tree()),
         m_options(options), m_visibility(scene.shapes(), scene.light()) {}
 
-  void forget() override { m_follows = false; }
+  void reset() override { m_follows = false; }
 
   void prepare(const ShadingPoint& point, const Material& material) override {
     const wavelet::RotatedReflectance reflectance = material.reflectance(point);
     if (point.hit != nullptr) {
-      m_visibility.turn_to(*point.hit);
+      m_visibility.set_shading_point(*point.hit);
       m_product = &m_builder.build(reflectance, m_options.shadowed, m_visibility);
     } else {
       m_product = m_follows ? &m_builder.follow(reflectance, m_options.open)
@@ -41,7 +41,7 @@ public:
 private:
   wavelet::AdaptiveProduct m_builder;
   ProductOptions m_options;
-  detail::SeenSquares m_visibility;
+  detail::ConservativeVisibility m_visibility;
   bool m_follows = false;
 };
 

@@ -1,4 +1,4 @@
-#include "samplers/kinds.h"
+#include "samplers/sampler_factories.h"
 
 #include <array>
 
@@ -53,25 +53,25 @@ constexpr std::array entries = {
                      .name = "median-cut",
                      .summary = "lamps for regions of equal energy (Debevec 2005)",
                      .needs = NeedsNothing,
-                     .claim = SamplerClaim::Biased},
+                     .bias = Bias::Biased},
           .make = make_median_cut_factory},
     Entry{.traits = {.kind = SamplerKind::KolligKeller,
                      .name = "kollig-keller",
                      .summary = "lamps by weighted relaxation (Kollig and Keller 2003)",
                      .needs = NeedsNothing,
-                     .claim = SamplerClaim::Biased},
+                     .bias = Bias::Biased},
           .make = make_kollig_keller_factory},
     Entry{.traits = {.kind = SamplerKind::Structured,
                      .name = "structured",
                      .summary = "lamps in strata of like brightness (Agarwal et al. 2003)",
                      .needs = NeedsNothing,
-                     .claim = SamplerClaim::Biased},
+                     .bias = Bias::Biased},
           .make = make_structured_factory},
     Entry{.traits = {.kind = SamplerKind::Ostromoukhov,
                      .name = "ostromoukhov",
                      .summary = "lamps on a Penrose tiling (Ostromoukhov et al. 2004)",
                      .needs = NeedsNothing,
-                     .claim = SamplerClaim::Biased},
+                     .bias = Bias::Biased},
           .make = make_ostromoukhov_factory},
     Entry{.traits = {.kind = SamplerKind::MisPower,
                      .name = "mis-power",
@@ -82,7 +82,7 @@ constexpr std::array entries = {
                      .name = "bis-reject",
                      .summary = "their product, by rejection (Burke et al. 2005)",
                      .needs = NeedsLightDistribution | NeedsMaterialTrees,
-                     .claim = SamplerClaim::Biased},
+                     .bias = Bias::Biased},
           .make = make_bis_reject_factory},
     Entry{.traits = {.kind = SamplerKind::BisSir,
                      .name = "bis-sir",
@@ -105,7 +105,7 @@ constexpr std::array entries = {
                      .summary = "hash-table product of the nearest entries of two tables "
                                 "(Clarberg et al. 2005)",
                      .needs = NeedsTables,
-                     .claim = SamplerClaim::Biased},
+                     .bias = Bias::Biased},
           .make = make_wais_factory},
     Entry{.traits = {.kind = SamplerKind::Pps,
                      .name = "pps",

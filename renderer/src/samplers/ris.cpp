@@ -3,8 +3,8 @@
 // cos over their mean density, and counts with its target over the mean weight of its own M.
 
 #include "samplers/candidate_pool.h"
-#include "samplers/kinds.h"
 #include "samplers/mis_sampler.h"
+#include "samplers/sampler_factories.h"
 
 #include <algorithm>
 

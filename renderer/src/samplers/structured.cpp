@@ -1,8 +1,8 @@
 // Lamps in strata of like brightness (Agarwal, Ramamoorthi, Belongie and Jensen 2003, "Structured
 // Importance Sampling of Environment Maps").
 
-#include "samplers/kinds.h"
-#include "samplers/lamps.h"
+#include "samplers/representative_lights.h"
+#include "samplers/sampler_factories.h"
 
 #include <algorithm>
 #include <array>
@@ -181,10 +181,10 @@ public:
         m_regions[i] = nearest(i);
   }
 
-  std::vector<Lamp> lamps() const {
+  std::vector<RepresentativeLight> lights() const {
     if (m_centres.empty())
       return {};
-    return lamps_of_regions(m_pixels, m_regions, m_centres.size());
+    return lights_of_regions(m_pixels, m_regions, m_centres.size());
   }
 
 private:
@@ -251,10 +251,10 @@ private:
 
 std::unique_ptr<SamplerFactory> make_structured_factory(const LoadedScene& scene,
                                                         const SamplerOptions& options) {
-  return lamp_factory(
+  return representative_light_factory(
       scene.light(),
       [](const LightPixels& pixels, std::size_t count) {
-        return Centres(pixels, Stratification(pixels, count)).lamps();
+        return Centres(pixels, Stratification(pixels, count)).lights();
       },
       options);
 }

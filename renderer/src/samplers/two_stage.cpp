@@ -2,9 +2,9 @@
 // divided by the reflectance at each point, a region is chosen by the product of both, and a place
 // in it by the light's summed-area table.
 
-#include "samplers/kinds.h"
 #include "samplers/light_partition.h"
 #include "samplers/lobe_sampling.h"
+#include "samplers/sampler_factories.h"
 
 #include <wavelet/square/sphere_map.h>
 

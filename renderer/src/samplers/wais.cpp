@@ -2,8 +2,8 @@
 // nearest entries of two tables as hash tables of wavelet coefficients of luminance, their product
 // by the published algorithm, once for each point, and points warped down the product's tree.
 
-#include "samplers/kinds.h"
 #include "samplers/quadrant_tree.h"
+#include "samplers/sampler_factories.h"
 #include "samplers/table_cells.h"
 
 #include <wavelet/reference/reference.h>

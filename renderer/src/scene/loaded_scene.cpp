@@ -17,18 +17,18 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
   const unsigned needed = traits(sampler).needs | further;
   const std::clock_t start = std::clock();
   if ((needed & NeedsLightDistribution) != 0)
-    m_light.need_distribution();
+    m_light.require_distribution();
   if ((needed & NeedsLightTree) != 0 || unshadowed_product)
-    m_light.need_tree();
+    m_light.require_tree();
   if ((needed & NeedsMaterialTrees) != 0 || unshadowed_product)
     for (Material& material : m_materials)
-      material.need_trees();
+      material.require_trees();
   if ((needed & NeedsLobes) != 0)
     for (Material& material : m_materials)
-      material.need_lobe();
+      material.require_lobe();
   if ((needed & NeedsTables) != 0) {
     for (Material& material : m_materials)
-      material.need_roll_table();
+      material.require_roll_table();
     check_tables(traits(sampler).name);
   }
   m_preparation_seconds =

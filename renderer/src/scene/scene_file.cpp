@@ -43,7 +43,7 @@ void read_film(const SceneNode& node, SceneDescription& scene) {
   node.allow({"width", "height"});
   const long long width = node.at("width").whole_number();
   const long long height = node.at("height").whole_number();
-  const std::string problem = film_size_problem(width, height);
+  const std::string problem = validate_film_size(width, height);
   if (!problem.empty())
     node.fail(problem);
   scene.width = static_cast<int>(width);
@@ -64,7 +64,7 @@ void read_projection(const SceneNode& node, CameraDescription& camera) {
   const std::string type = node.at("type").choice("camera", {"perspective", "orthographic"});
   if (type == "orthographic") {
     node.allow({"type", "from", "to", "up", "height"});
-    camera.projection = Projection::Orthographic;
+    camera.projection = CameraProjection::Orthographic;
     camera.height = node.at("height").positive();
     return;
   }

@@ -81,14 +81,14 @@ const ShapeReader& reader_of(const SceneNode& type) {
 
 Eigen::Vector3d to_vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
-Transform read_rotation(const SceneNode& node) {
+AffineMap read_rotation(const SceneNode& node) {
   if (!node.is_object())
     return euler_rotation(to_vector(node.numbers(3)));
   node.allow({"axis", "angle"});
   return rotation(node.at("axis").direction().cast<double>(), node.at("angle").number());
 }
 
-Transform read_scaling(const SceneNode& node) {
+AffineMap read_scaling(const SceneNode& node) {
   const Eigen::Vector3d factors =
       node.is_number() ? Eigen::Vector3d::Constant(node.number()) : to_vector(node.numbers(3));
   if ((factors.array() == 0).any())
@@ -96,17 +96,17 @@ Transform read_scaling(const SceneNode& node) {
   return scaling(factors);
 }
 
-Transform read_matrix(const SceneNode& node) {
+AffineMap read_matrix(const SceneNode& node) {
   const std::vector<double> m = node.numbers(16);
   if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
     node.fail("must end with the row 0, 0, 0, 1");
-  Transform result;
+  AffineMap result;
   result.linear << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
   result.offset << m[3], m[7], m[11];
   return result;
 }
 
-Transform read_step(const SceneNode& node) {
+AffineMap read_step(const SceneNode& node) {
   const Names known = {"translate", "rotate", "scale", "matrix"};
   node.allow(known);
   if (node.keys().size() != 1)
@@ -121,8 +121,8 @@ Transform read_step(const SceneNode& node) {
   return read_matrix(node.at("matrix"));
 }
 
-Transform read_transform(const SceneNode& node) {
-  Transform result;
+AffineMap read_transform(const SceneNode& node) {
+  AffineMap result;
   if (node.is_object())
     result = read_step(node);
   else

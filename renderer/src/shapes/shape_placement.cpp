@@ -12,11 +12,11 @@ using Eigen::Vector3d;
 
 /// Maps the z axis to `axis` (its length kept), x and y to vectors of length `across` at right
 /// angles to it, 0 to `origin`.
-Transform placement(const Vec3& origin, const Vector3d& axis, double across) {
+AffineMap placement(const Vec3& origin, const Vector3d& axis, double across) {
   const Vector3d n = axis.stableNormalized();
   const Vector3d other = std::abs(n.x()) < 0.7 ? Vector3d::UnitX() : Vector3d::UnitY();
   const Vector3d t = other.cross(n).normalized();
-  Transform result;
+  AffineMap result;
   result.linear.col(0) = across * t;
   result.linear.col(1) = across * n.cross(t);
   result.linear.col(2) = axis;
@@ -24,33 +24,33 @@ Transform placement(const Vec3& origin, const Vector3d& axis, double across) {
   return result;
 }
 
-Transform canonical_to_shape(const Sphere& sphere) {
+AffineMap canonical_to_shape(const Sphere& sphere) {
   return {sphere.radius * Eigen::Matrix3d::Identity(), sphere.center.cast<double>()};
 }
 
-Transform canonical_to_shape(const Disk& disk) {
+AffineMap canonical_to_shape(const Disk& disk) {
   return placement(disk.center, disk.normal.cast<double>().stableNormalized(), disk.radius);
 }
 
-Transform canonical_to_shape(const Box& box) {
+AffineMap canonical_to_shape(const Box& box) {
   const Vector3d low = box.low.cast<double>();
   const Vector3d high = box.high.cast<double>();
   return {Eigen::Matrix3d((0.5 * (high - low)).asDiagonal()), 0.5 * (low + high)};
 }
 
-Transform canonical_to_shape(const Cylinder& cylinder) {
+AffineMap canonical_to_shape(const Cylinder& cylinder) {
   const Vector3d base = cylinder.base.cast<double>();
   const Vector3d half = 0.5 * (cylinder.top.cast<double>() - base);
-  Transform result = placement(cylinder.base, half, cylinder.radius);
+  AffineMap result = placement(cylinder.base, half, cylinder.radius);
   result.offset += half;
   return result;
 }
 
-Transform canonical_to_shape(const Cone& cone) {
+AffineMap canonical_to_shape(const Cone& cone) {
   return placement(cone.base, cone.apex.cast<double>() - cone.base.cast<double>(), cone.radius);
 }
 
-Transform canonical_to_shape(const Torus& torus) {
+AffineMap canonical_to_shape(const Torus& torus) {
   const Vector3d axis = torus.axis.cast<double>().stableNormalized();
   return placement(torus.center, torus.major_radius * axis, torus.major_radius);
 }
@@ -70,7 +70,7 @@ double similarity_factor(const Eigen::Matrix3d& linear) {
   return rest.cwiseAbs().maxCoeff() <= 1e-12 * squared ? std::sqrt(squared) : 0;
 }
 
-void set_placement(Solid& solid, const Transform& to_world) {
+void set_placement(Solid& solid, const AffineMap& to_world) {
   solid.to_world = to_world;
   solid.to_object = to_world.inverse();
   if (solid.kind == SolidKind::Sphere) {
@@ -88,7 +88,7 @@ void set_placement(Solid& solid, const Transform& to_world) {
 
 } // namespace
 
-Solid place_solid(const Shape& shape, const Transform& transform) {
+Solid place_solid(const Shape& shape, const AffineMap& transform) {
   Solid solid;
   std::visit(
       [&](const auto& plain) {
@@ -104,7 +104,7 @@ Solid place_solid(const Shape& shape, const Transform& transform) {
   return solid;
 }
 
-WorldPlane place_plane(const Plane& plane, const Transform& transform) {
+WorldPlane place_plane(const Plane& plane, const AffineMap& transform) {
   const Vector3d normal = plane.normal.cast<double>().stableNormalized();
   const Vector3d turned = (transform.inverse().linear.transpose() * normal).stableNormalized();
   return {turned, turned.dot(transform.point(plane.point.cast<double>())), -1};

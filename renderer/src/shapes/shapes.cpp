@@ -121,7 +121,7 @@ Hit solid_hit(const Solid& solid, double t, const Vector3d& p) {
 
 } // namespace
 
-int ShapeSet::add(const Shape& shape, const Transform& transform) {
+int ShapeSet::add(const Shape& shape, const AffineMap& transform) {
   assert(transform.usable());
   const int object = size();
   if (const Plane* plane = std::get_if<Plane>(&shape)) {

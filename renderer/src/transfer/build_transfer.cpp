@@ -100,7 +100,7 @@ TransferReport build_transfer(const LoadedScene& scene, const Variation& variati
     batch.clear();
     batch.resize(std::min(batch_pixels, points.size() - first));
     parallel_ranges(batch.size(), 64, [&](std::size_t begin, std::size_t end) {
-      TransferMaker maker(scene, visibility, variation, options, variances);
+      TransferBuilder maker(scene, visibility, variation, options, variances);
       for (std::size_t i = begin; i < end; ++i)
         batch[i] = {maker.make(points[first + i]), maker.report()};
     });

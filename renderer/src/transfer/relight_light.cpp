@@ -1,6 +1,6 @@
 #include <renderer/transfer/relight.h>
 
-#include <renderer/transfer/turned_light.h>
+#include <renderer/transfer/rotated_light.h>
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/square/sphere_map.h>
@@ -19,7 +19,7 @@ public:
         m_points(film_points(scene, transfer.width(), transfer.height())) {}
 
   Film make(const Change& change) override {
-    const Eigen::Matrix3f turn = turn_of(change.rotate);
+    const Eigen::Matrix3f turn = rotation_of(change.rotate);
     const wavelet::DenseCoefficients light(m_turned.map(turn));
     Film film(m_transfer.width(), m_transfer.height());
     parallel_ranges(film.count(), pixels_at_once, [&](std::size_t begin, std::size_t end) {
@@ -42,7 +42,7 @@ private:
   const Transfer& m_transfer;
   bool m_shown;
   Light m_light;
-  TurnedLight m_turned;
+  RotatedLight m_turned;
   std::vector<FilmPoint> m_points;
 };
 

@@ -1,7 +1,7 @@
 // Transfer that is all but one object's visibility: the object moves, its shadow with it.
 #include <renderer/transfer/relight.h>
 
-#include "transfer/hidden_share.h"
+#include "transfer/sphere_occlusion.h"
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/product/multiply.h>
@@ -26,7 +26,7 @@ public:
 
   /// ∫∫ of a tree over the directions that the object hides from a point.
   Rgb hidden(const Hit& from, const wavelet::TreeView& tree,
-             const detail::HiddenShare& share) const {
+             const detail::SphereOcclusion& share) const {
     if (m_shapes.solids().empty())
       return hidden_by_tree(from, tree);
     const detail::Solid& solid = m_shapes.solids().front();
@@ -152,7 +152,7 @@ private:
   LoadedScene m_scene;
   int m_object;
   std::vector<FilmPoint> m_points;
-  detail::HiddenShare m_share;
+  detail::SphereOcclusion m_share;
 };
 
 } // namespace

@@ -38,7 +38,7 @@ private:
   void load(std::size_t index) {
     m_materials.resize(m_scene.materials.size(), nullptr);
     m_loaded.emplace_back(m_scene.materials[index], SourceLookups().brdf);
-    m_loaded.back().need_trees();
+    m_loaded.back().require_trees();
     m_materials[index] = &m_loaded.back();
   }
 
@@ -68,7 +68,7 @@ private:
       return point.wo;
     const CameraDescription& camera = m_scene.camera;
     const Vec3 eye = camera.from + change.move;
-    const bool parallel = camera.projection == Projection::Orthographic;
+    const bool parallel = camera.projection == CameraProjection::Orthographic;
     return (eye - (parallel ? camera.to : point.hit.position)).normalized();
   }
 

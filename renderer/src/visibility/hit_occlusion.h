@@ -14,7 +14,7 @@ public:
   HitOcclusion(const ShapeSet& shapes, const Light& light) : m_shapes(shapes), m_light(light) {}
 
   /// @param hit must live until the next call; its normal points to the side that is seen
-  void turn_to(const Hit& hit) { m_hit = &hit; }
+  void set_shading_point(const Hit& hit) { m_hit = &hit; }
 
   /// Below the surface nothing counts as hidden: what lies there is no light's way.
   void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override {

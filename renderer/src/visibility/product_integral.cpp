@@ -172,7 +172,7 @@ public:
         m_masks(visibility, scene.shapes().size(), options.levels),
         m_reflected(m_masked, options.split_share) {}
 
-  void forget() override {}
+  void reset() override {}
 
   void shade(const PixelHit& seen, const Pass&, PixelSums& sums) override {
     const Light& light = m_scene.light();

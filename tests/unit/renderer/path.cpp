@@ -63,7 +63,7 @@ public:
     write_haar(material.haar, brdf::BrdfMaps(brdf::MeasuredBrdf(material.brdf), options));
     return add(material);
   }
-  void object(const Shape& shape, int material, const Transform& transform = {}) {
+  void object(const Shape& shape, int material, const AffineMap& transform = {}) {
     scene.objects.push_back({shape, transform, material});
   }
 
@@ -200,7 +200,7 @@ PathScene with_flat_lamps() {
   PathScene scene(0.1F);
   const int wall = scene.measured(0.6F);
   const int lamp = scene.lambert(0.5F, 2);
-  const Transform skewed = rotation(Eigen::Vector3d(1, 2, 3), 50).then(scaling({1, 0.5, 1.5}));
+  const AffineMap skewed = rotation(Eigen::Vector3d(1, 2, 3), 50).then(scaling({1, 0.5, 1.5}));
   scene.object(Plane{Vec3(0, -1, 0), Vec3::UnitY()}, wall);
   scene.object(Disk{Vec3(-0.6F, 1.8F, 0), Vec3(0.3F, -1, 0.2F), 0.8F}, lamp);
   scene.object(Box{Vec3(-0.4F, -0.4F, -0.4F), Vec3(0.4F, 0.4F, 0.4F)}, lamp,

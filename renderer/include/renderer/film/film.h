@@ -13,7 +13,7 @@ namespace haarlight::renderer {
 inline constexpr long long film_pixels_max = 1LL << 26;
 
 /// Why a film of this size cannot be, in words; empty if it can.
-std::string film_size_problem(long long width, long long height);
+std::string validate_film_size(long long width, long long height);
 
 /// Row 0 is the top row, x runs to the right; pixel (x, y) has index y·width + x.
 struct Film {
@@ -27,7 +27,7 @@ struct Film {
   std::vector<float> samples;  ///< light samples taken
 
   Film() = default;
-  /// All zero. @param w,h a size without film_size_problem()
+  /// All zero. @param w,h a size without validate_film_size()
   Film(int w, int h)
       : width(w), height(h), rgb(3 * count()), normal(3 * count()), pdf_sum(count()),
         variance(count()), samples(count()) {}

@@ -34,7 +34,7 @@ std::optional<Estimator> estimator_from_name(const std::string& name);
 std::string estimator_name(Estimator estimator);
 
 /// What is wrong with a combination, in words; nothing if it serves.
-std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator);
+std::optional<std::string> validate(SamplerKind sampler, Estimator estimator);
 
 /// Whether an estimator needs L_ns from a product even if the sampler has none.
 inline bool needs_unshadowed(Estimator estimator) { return estimator != Estimator::Unbiased; }

@@ -27,10 +27,10 @@ public:
 
   /// Makes what samplers use, if not there yet: the world-frame tree; the distribution to draw
   /// from.
-  void need_tree();
-  void need_distribution();
+  void require_tree();
+  void require_distribution();
 
-  /// After need_tree().
+  /// After require_tree().
   const wavelet::TreeView& tree() const { return m_map->tree(0, 0); }
 
   /// The picture it is looked up in, in the light's own frame, if there is one.
@@ -40,11 +40,11 @@ public:
   const TreeTable* rotated_table() const { return m_rotated ? &*m_rotated : nullptr; }
 
   /// Draws directions in proportion to radiance, one for each point of [0, 1)², as many as `out`;
-  /// after need_distribution(). Densities in sr⁻¹.
+  /// after require_distribution(). Densities in sr⁻¹.
   void sample(std::span<const Vec2> points, std::span<probe::LightSample> out) const;
   float pdf(const Vec3& w) const;
 
-  /// The probe's pixels as a distribution, after need_distribution(); null if there is no probe.
+  /// The probe's pixels as a distribution, after require_distribution(); null if there is no probe.
   const probe::LightDistribution* distribution() const {
     return m_distribution ? &*m_distribution : nullptr;
   }

@@ -24,30 +24,30 @@ public:
   /// f_r(ω_o, ω)·max(0, n·ω), sr⁻¹, for many directions at one point.
   void evaluate(const ShadingPoint& point, std::span<const Vec3> directions,
                 std::span<Rgb> out) const {
-    m_truth->evaluate(point, directions, out);
+    m_source_reflectance->evaluate(point, directions, out);
   }
 
   /// The same for one.
   Rgb evaluate(const ShadingPoint& point, const Vec3& direction) const;
 
   /// The formula, if the material is one with a sampling routine of its own.
-  const brdf::AnalyticBrdf* model() const { return m_truth->model(); }
+  const brdf::AnalyticBrdf* model() const { return m_source_reflectance->model(); }
 
   /// Makes what samplers use in place of the truth: the θ_r trees and their pyramid, if not there
   /// yet.
-  void need_trees();
+  void require_trees();
 
   /// Makes what sampling the reflectance alone uses: the trees, unless it has a routine of its own.
-  void need_lobe();
+  void require_lobe();
 
-  /// The θ_r-only set seen from a point: for AdaptiveProduct. After need_trees().
+  /// The θ_r-only set seen from a point: for AdaptiveProduct. After require_trees().
   wavelet::RotatedReflectance reflectance(const ShadingPoint& point) const;
 
-  /// The tree of the θ_r cell nearest to a point's, in its reflection frame. After need_trees().
+  /// The tree of the θ_r cell nearest to a point's, in its reflection frame. After require_trees().
   const wavelet::TreeView& lobe(const ShadingPoint& point) const;
 
   /// Makes the set with rolls for a formula that has none; measured materials must name theirs.
-  void need_roll_table();
+  void require_roll_table();
 
   /// The set with rolls, if there is one.
   const TreeTable* roll_table() const { return m_rolls ? &*m_rolls : nullptr; }
@@ -63,7 +63,7 @@ private:
   Rgb m_emission = Rgb::Zero();
   std::shared_ptr<const TreeTable> m_lobes; ///< θ_r only
   std::optional<TreeTable> m_rolls;
-  std::unique_ptr<Reflectance> m_truth;
+  std::unique_ptr<Reflectance> m_source_reflectance;
   std::optional<wavelet::Pyramid> m_pyramid;
 };
 

@@ -59,7 +59,7 @@ public:
   virtual ~Sampler() = default;
 
   /// Forgets the points before: what comes depends on the points to come alone.
-  virtual void forget() {}
+  virtual void reset() {}
 
   /// Turns to a point, best one near the last. What it refers to must live until the next call.
   virtual void prepare(const ShadingPoint& point, const Material& material) = 0;

@@ -41,7 +41,7 @@ enum SamplerNeed : unsigned {
 };
 
 /// What samplers return as density.
-enum class SamplerClaim : std::uint8_t {
+enum class Bias : std::uint8_t {
   Unbiased, ///< directions have the density they count with, or count so in expectation
   Biased    ///< as published: lamps stand for regions, or directions are overlooked
 };
@@ -51,7 +51,7 @@ struct SamplerTraits {
   const char* name;    ///< as on the command line
   const char* summary; ///< what it draws from, and whose it is
   unsigned needs;      ///< of SamplerNeed
-  SamplerClaim claim = SamplerClaim::Unbiased;
+  Bias bias = Bias::Unbiased;
   bool follows_product = false; ///< knows L_ns of the paper's eq. 8, and directions follow it
 };
 

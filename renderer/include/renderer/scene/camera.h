@@ -20,7 +20,7 @@ public:
   Ray generate_ray(float x, float y) const;
 
 private:
-  Projection m_projection;
+  CameraProjection m_projection;
   Vec3 m_from;
   Vec3 m_forward;
   Vec3 m_corner; // of the film from the centre of view: top left

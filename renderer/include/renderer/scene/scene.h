@@ -2,7 +2,7 @@
 // A scene in words: which files, which shapes, which camera, as plain values. Nothing is loaded
 // yet. renderer/SCENE.md documents the file format; <renderer/scene/scene_file.h> reads it.
 
-#include <renderer/scene/transform.h>
+#include <renderer/scene/affine_map.h>
 #include <renderer/shapes/shape.h>
 
 #include <brdf/analytic.h>
@@ -13,14 +13,14 @@
 
 namespace haarlight::renderer {
 
-enum class Projection {
+enum class CameraProjection {
   Perspective, ///< rays from one point
   Orthographic ///< parallel rays
 };
 
 /// Looks from `from` to `to`; `up` points upwards in the picture once made perpendicular.
 struct CameraDescription {
-  Projection projection = Projection::Perspective;
+  CameraProjection projection = CameraProjection::Perspective;
   Vec3 from = Vec3(0, 0, 1);
   Vec3 to = Vec3::Zero();  ///< not `from`
   Vec3 up = Vec3::UnitY(); ///< not parallel to the view
@@ -55,7 +55,7 @@ struct MaterialDescription {
 
 struct ObjectDescription {
   Shape shape;
-  Transform transform; ///< applied to the shape where it stands
+  AffineMap transform; ///< applied to the shape where it stands
   int material = 0;    ///< index into SceneDescription::materials
 };
 

@@ -7,7 +7,7 @@
 // float; what passes is intersected in double. See <renderer/shapes/ray.h> for how a ray leaves a
 // surface. Cost grows linearly with the number of shapes.
 
-#include <renderer/scene/transform.h>
+#include <renderer/scene/affine_map.h>
 #include <renderer/shapes/ray.h>
 #include <renderer/shapes/shape.h>
 #include <wavelet/base/lanes.h>
@@ -34,8 +34,8 @@ struct Solid {
   double tube = 0;                                  ///< of a torus, in (0, 1)
   Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< of a sphere around it, world
   double radius = 0;
-  Transform to_object;
-  Transform to_world;
+  AffineMap to_object;
+  AffineMap to_world;
   int object = -1;
 };
 
@@ -61,7 +61,7 @@ public:
   /// @param shape     obeys the ranges in <renderer/shapes/shape.h>
   /// @param transform applied to the shape where it stands; usable()
   /// @return the object index its hits will carry: 0, 1, 2, …
-  int add(const Shape& shape, const Transform& transform = {});
+  int add(const Shape& shape, const AffineMap& transform = {});
 
   int size() const { return static_cast<int>(m_solids.size() + m_planes.size()); }
 

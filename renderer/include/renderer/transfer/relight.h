@@ -44,7 +44,7 @@ private:
 
 /// What the varying factor is changed to. Members that do not concern it are left alone.
 struct Change {
-  Eigen::Vector3d rotate = Eigen::Vector3d::Zero(); ///< light: yaw, pitch, roll as in turn_of()
+  Eigen::Vector3d rotate = Eigen::Vector3d::Zero(); ///< light: yaw, pitch, roll as in rotation_of()
   Vec3 move = Vec3::Zero(); ///< object: from its place in the scene, world; view: the eye likewise
 };
 

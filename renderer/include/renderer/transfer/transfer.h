@@ -52,13 +52,13 @@ double default_transfer_tolerance(Varying varying);
 ///
 /// A pixel that the variation leaves as it is has a tree without nodes, its mean the pixel's
 /// radiance / 4π: where nothing is hit (with Varying::Light: 0), and other materials' pixels.
-class TransferMaker {
+class TransferBuilder {
 public:
   /// @param scene loaded for SamplerKind::Product; must outlive this, as must `variances`
   /// @param light_variances wavelet::variances_within() of the light's tree
-  TransferMaker(const LoadedScene& scene, const VisibilityTrees& visibility,
-                const Variation& variation, const wavelet::ProjectionOptions& options,
-                const std::vector<float>& light_variances);
+  TransferBuilder(const LoadedScene& scene, const VisibilityTrees& visibility,
+                  const Variation& variation, const wavelet::ProjectionOptions& options,
+                  const std::vector<float>& light_variances);
 
   wavelet::Tree make(const FilmPoint& point);
 
@@ -98,7 +98,7 @@ wavelet::SetInfo transfer_info(const SceneDescription& scene, const Variation& v
 
 /// Makes the trees of all pixels, from several threads, and gives them to a sink row by row: column
 /// x and row y of the set are the pixel's. Memory: a few thousand trees. The caller finishes.
-/// @param scene as for TransferMaker @throws Error(Output) as the sink does
+/// @param scene as for TransferBuilder @throws Error(Output) as the sink does
 TransferReport build_transfer(const LoadedScene& scene, const Variation& variation,
                               const wavelet::ProjectionOptions& options, int width, int height,
                               wavelet::TreeSink& sink, const wavelet::Progress& progress = {});

@@ -1,4 +1,4 @@
-#include "transfer/hidden_share.h"
+#include "transfer/sphere_occlusion.h"
 
 #include <algorithm>
 #include <array>
@@ -42,7 +42,7 @@ float share_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
 
 } // namespace
 
-HiddenShare::HiddenShare() {
+SphereOcclusion::SphereOcclusion() {
   std::vector<SquarePlace> places = {SquarePlace{}};
   for (std::size_t i = 0; i < places.size(); ++i) {
     m_bounds.push_back(wavelet::square_cap(places[i]));
@@ -52,13 +52,13 @@ HiddenShare::HiddenShare() {
   }
 }
 
-Rgb HiddenShare::within(const wavelet::TreeView& tree, const Cap& cap) const {
+Rgb SphereOcclusion::within(const wavelet::TreeView& tree, const Cap& cap) const {
   const Walk walk = {tree, cap, negligible_share * luminance(tree.mean)};
   return wavelet::to_rgb(within(walk, tree.root(), wavelet::to_lanes(tree.mean), {0, 0}));
 }
 
-Float4 HiddenShare::within(const Walk& walk, std::uint32_t node, Float4 mean,
-                           const Square& square) const {
+Float4 SphereOcclusion::within(const Walk& walk, std::uint32_t node, Float4 mean,
+                               const Square& square) const {
   const wavelet::SquareCap& bounds = m_bounds[square.index];
   const float weight = wavelet::lane_sum(mean * wavelet::luminance_lanes);
   const RegionPart part = walk.cap.classify(bounds);

@@ -11,9 +11,9 @@ namespace haarlight::renderer::detail {
 
 /// Integrates trees over caps: a square wholly inside counts with its average, one wholly outside
 /// not at all, so that only what the cap's edge crosses is looked into. Shared by threads.
-class HiddenShare {
+class SphereOcclusion {
 public:
-  HiddenShare();
+  SphereOcclusion();
 
   /// ∫∫ T over the cap, per channel; the whole square's area is 1.
   Rgb within(const wavelet::TreeView& tree, const Cap& cap) const;

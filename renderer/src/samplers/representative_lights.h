@@ -25,7 +25,7 @@ struct LightPixels {
 };
 
 /// A direction that stands for a region.
-struct Lamp {
+struct RepresentativeLight {
   Vec3 direction;
   Rgb radiance;          ///< mean over the region
   float solid_angle = 0; ///< of the region
@@ -52,16 +52,19 @@ private:
 
 /// One lamp for each region that shines, at its centroid by luminance.
 /// @param regions of each pixel, below `count`
-std::vector<Lamp> lamps_of_regions(const LightPixels& pixels,
-                                   std::span<const std::uint32_t> regions, std::size_t count);
+std::vector<RepresentativeLight> lights_of_regions(const LightPixels& pixels,
+                                                   std::span<const std::uint32_t> regions,
+                                                   std::size_t count);
 
 /// Makes at most `count` lamps; the fewer the light has pixels or shines at all.
-using MakeLamps = std::function<std::vector<Lamp>(const LightPixels& pixels, std::size_t count)>;
+using MakeRepresentativeLights =
+    std::function<std::vector<RepresentativeLight>(const LightPixels& pixels, std::size_t count)>;
 
 /// Samplers that return the same lamps for every point, as many as are asked for: 1/N Σ f L / pdf
 /// is Σ f L_k Ω_k over the lamps. Lamps for options.count are made now, others when first asked
 /// for.
-std::unique_ptr<SamplerFactory> lamp_factory(const Light& light, MakeLamps make,
-                                             const SamplerOptions& options);
+std::unique_ptr<SamplerFactory> representative_light_factory(const Light& light,
+                                                             MakeRepresentativeLights make,
+                                                             const SamplerOptions& options);
 
 } // namespace haarlight::renderer

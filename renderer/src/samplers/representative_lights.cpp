@@ -1,4 +1,4 @@
-#include "samplers/lamps.h"
+#include "samplers/representative_lights.h"
 
 #include <wavelet/square/sphere_map.h>
 
@@ -13,8 +13,8 @@ constexpr int map_size = 512;
 constexpr int least_map_size = 128;
 
 /// Lamps as samples; where there are fewer lamps than samples the rest count nothing.
-struct LampSamples {
-  LampSamples(std::span<const Lamp> lamps, std::size_t count)
+struct LightSet {
+  LightSet(std::span<const RepresentativeLight> lamps, std::size_t count)
       : samples(count, {Vec3::UnitZ(), 0, Technique::Fixed}), radiance(count, Rgb::Zero()) {
     for (std::size_t i = 0; i < lamps.size(); ++i) {
       samples[i] = {lamps[i].direction, 1 / (static_cast<float>(count) * lamps[i].solid_angle),
@@ -28,35 +28,37 @@ struct LampSamples {
 };
 
 /// All counts' lamps, each made once.
-class LampBook {
+class LightSetCache {
 public:
-  LampBook(const Light& light, MakeLamps make) : m_pixels(light), m_make(std::move(make)) {}
+  LightSetCache(const Light& light, MakeRepresentativeLights make)
+      : m_pixels(light), m_make(std::move(make)) {}
 
-  const LampSamples& of(std::size_t count) const {
+  const LightSet& of(std::size_t count) const {
     const std::lock_guard lock(m_mutex);
     auto found = m_sets.find(count);
     if (found == m_sets.end())
-      found = m_sets.emplace(count, LampSamples(m_make(m_pixels, count), count)).first;
+      found = m_sets.emplace(count, LightSet(m_make(m_pixels, count), count)).first;
     return found->second;
   }
 
 private:
   LightPixels m_pixels;
-  MakeLamps m_make;
+  MakeRepresentativeLights m_make;
   mutable std::mutex m_mutex;
-  mutable std::map<std::size_t, LampSamples> m_sets;
+  mutable std::map<std::size_t, LightSet> m_sets;
 };
 
-class LampSampler : public Sampler {
+class RepresentativeLightSampler : public Sampler {
 public:
-  explicit LampSampler(std::shared_ptr<const LampBook> book) : m_book(std::move(book)) {}
+  explicit RepresentativeLightSampler(std::shared_ptr<const LightSetCache> book)
+      : m_book(std::move(book)) {}
 
   void prepare(const ShadingPoint& /*point*/, const Material& /*material*/) override {}
 
   void sample(const PointSource& /*points*/, std::span<DirectionSample> out) override {
-    if (m_lamps == nullptr || m_lamps->samples.size() != out.size())
-      m_lamps = &m_book->of(out.size());
-    std::ranges::copy(m_lamps->samples, out.begin());
+    if (m_lights == nullptr || m_lights->samples.size() != out.size())
+      m_lights = &m_book->of(out.size());
+    std::ranges::copy(m_lights->samples, out.begin());
   }
 
   /// That of the nearest lamp, whose region the direction most likely lies in.
@@ -75,28 +77,29 @@ public:
 
   void radiance(const Light& /*light*/, std::span<const Vec3> /*directions*/,
                 std::span<Rgb> out) const override {
-    std::copy_n(m_lamps->radiance.begin(), out.size(), out.begin());
+    std::copy_n(m_lights->radiance.begin(), out.size(), out.begin());
   }
 
 private:
-  std::shared_ptr<const LampBook> m_book;
-  const LampSamples* m_lamps = nullptr; ///< of the last count
+  std::shared_ptr<const LightSetCache> m_book;
+  const LightSet* m_lights = nullptr; ///< of the last count
 };
 
-class LampFactory : public SamplerFactory {
+class RepresentativeLightFactory : public SamplerFactory {
 public:
-  LampFactory(const Light& light, MakeLamps make, std::size_t count)
-      : m_book(std::make_shared<LampBook>(light, std::move(make))) {
+  RepresentativeLightFactory(const Light& light, MakeRepresentativeLights make, std::size_t count)
+      : m_book(std::make_shared<LightSetCache>(light, std::move(make))) {
     if (count > 0)
       m_book->of(count);
   }
 
   std::unique_ptr<Sampler> make(std::size_t /*count*/) const override {
-    return std::make_unique<LampSampler>(m_book);
+    return std::make_unique<RepresentativeLightSampler>(m_book);
   }
 
 private:
-  std::shared_ptr<const LampBook> m_book; ///< samplers keep it too, and may outlive the factory
+  std::shared_ptr<const LightSetCache>
+      m_book; ///< samplers keep it too, and may outlive the factory
 };
 
 } // namespace
@@ -136,8 +139,9 @@ Vec3 Centroid::direction() const {
           static_cast<float>(m_z / length)};
 }
 
-std::vector<Lamp> lamps_of_regions(const LightPixels& pixels,
-                                   std::span<const std::uint32_t> regions, std::size_t count) {
+std::vector<RepresentativeLight> lights_of_regions(const LightPixels& pixels,
+                                                   std::span<const std::uint32_t> regions,
+                                                   std::size_t count) {
   struct Region {
     Centroid centroid;
     Eigen::Array3d radiance = Eigen::Array3d::Zero();
@@ -150,7 +154,7 @@ std::vector<Lamp> lamps_of_regions(const LightPixels& pixels,
     region.radiance += pixels.radiance[i].cast<double>();
     ++region.pixels;
   }
-  std::vector<Lamp> result;
+  std::vector<RepresentativeLight> result;
   for (const Region& region : sums)
     if (region.centroid.weight() > 0) {
       const auto area = static_cast<double>(region.pixels);
@@ -160,9 +164,10 @@ std::vector<Lamp> lamps_of_regions(const LightPixels& pixels,
   return result;
 }
 
-std::unique_ptr<SamplerFactory> lamp_factory(const Light& light, MakeLamps make,
-                                             const SamplerOptions& options) {
-  return std::make_unique<LampFactory>(light, std::move(make), options.count);
+std::unique_ptr<SamplerFactory> representative_light_factory(const Light& light,
+                                                             MakeRepresentativeLights make,
+                                                             const SamplerOptions& options) {
+  return std::make_unique<RepresentativeLightFactory>(light, std::move(make), options.count);
 }
 
 } // namespace haarlight::renderer

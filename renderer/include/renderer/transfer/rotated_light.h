@@ -9,13 +9,13 @@ namespace haarlight::renderer {
 
 /// A rotation of the world: about +y by yaw, then about +x by pitch, then about +z by roll, all
 /// fixed axes, right-handed, degrees. With yaw alone it is what the scene's "rotate" does.
-Eigen::Matrix3f turn_of(const Eigen::Vector3d& yaw_pitch_roll);
+Eigen::Matrix3f rotation_of(const Eigen::Vector3d& yaw_pitch_roll);
 
 /// A light's map at any turn.
-class TurnedLight {
+class RotatedLight {
 public:
   /// @param resolution pixels along a side of the maps, a power of two ≥ 4
-  TurnedLight(const Light& light, int resolution);
+  RotatedLight(const Light& light, int resolution);
 
   /// The light turned about the world's origin on top of the scene's own turn, as a map in the
   /// light's frame: that in which the scene places it, which does not turn along.

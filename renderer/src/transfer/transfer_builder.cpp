@@ -16,14 +16,15 @@ wavelet::ProjectionTerm light_term(const LoadedScene& scene, const std::vector<f
 
 } // namespace
 
-TransferMaker::TransferMaker(const LoadedScene& scene, const VisibilityTrees& visibility,
-                             const Variation& variation, const wavelet::ProjectionOptions& options,
-                             const std::vector<float>& light_variances)
+TransferBuilder::TransferBuilder(const LoadedScene& scene, const VisibilityTrees& visibility,
+                                 const Variation& variation,
+                                 const wavelet::ProjectionOptions& options,
+                                 const std::vector<float>& light_variances)
     : m_scene(scene), m_visibility(visibility), m_variation(variation), m_options(options),
       m_light(light_term(scene, light_variances)), m_projection(options),
       m_visibilities(scene.description().objects.size()) {}
 
-wavelet::Tree TransferMaker::constant(const Rgb& mean) const {
+wavelet::Tree TransferBuilder::constant(const Rgb& mean) const {
   wavelet::Tree tree;
   tree.levels = m_options.levels;
   tree.type = m_options.coefficients;
@@ -33,21 +34,21 @@ wavelet::Tree TransferMaker::constant(const Rgb& mean) const {
   return tree;
 }
 
-Rgb TransferMaker::background(const FilmPoint& point) const {
+Rgb TransferBuilder::background(const FilmPoint& point) const {
   const Light& light = m_scene.light();
   if (m_variation.varying == Varying::Light || !m_scene.description().light.background)
     return Rgb::Zero();
   return light.radiance(light.to_light(-point.wo)) / wavelet::sphere_area;
 }
 
-bool TransferMaker::varies(const FilmPoint& point) const {
+bool TransferBuilder::varies(const FilmPoint& point) const {
   if (m_variation.varying != Varying::Material)
     return true;
   const auto object = static_cast<std::size_t>(point.hit.object);
   return m_scene.description().objects[object].material == m_variation.index;
 }
 
-void TransferMaker::add_visibilities(const Hit& hit) {
+void TransferBuilder::add_visibilities(const Hit& hit) {
   const auto& objects = m_scene.description().objects;
   const int moved = m_variation.varying == Varying::Object ? m_variation.index : -1;
   for (int i = 0; i < static_cast<int>(objects.size()); ++i) {
@@ -64,7 +65,7 @@ void TransferMaker::add_visibilities(const Hit& hit) {
   }
 }
 
-wavelet::Tree TransferMaker::make(const FilmPoint& point) {
+wavelet::Tree TransferBuilder::make(const FilmPoint& point) {
   m_report = {};
   if (point.hit.object < 0)
     return constant(background(point));

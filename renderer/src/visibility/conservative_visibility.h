@@ -25,13 +25,13 @@ struct Obstacle {
 /// Turned to one point after another. Squares that lie all within a sphere's outline or behind a
 /// plane or one convex shape, or beside all objects, are known; others are looked at in eight
 /// points, for all objects together.
-class SeenSquares final : public wavelet::SquareVisibility {
+class ConservativeVisibility final : public wavelet::SquareVisibility {
 public:
   /// @param shapes, light must outlive this
-  SeenSquares(const ShapeSet& shapes, const Light& light);
+  ConservativeVisibility(const ShapeSet& shapes, const Light& light);
 
   /// @param from its normal points to the side that is seen
-  void turn_to(const Hit& from);
+  void set_shading_point(const Hit& from);
 
   void look(std::span<const wavelet::SquarePlace> squares,
             std::span<wavelet::SquareView> views) override;

@@ -1,9 +1,9 @@
 // Estimates of what is seen of squares, against the rays they stand for.
 
-#include "visibility/seen_squares.h"
+#include "visibility/conservative_visibility.h"
+#include "occluders.h"
 #include "shapes/shape_canonical.h"
 #include "visibility/ray_lanes.h"
-#include "occluders.h"
 
 #include <wavelet/square/sphere_map.h>
 
@@ -45,7 +45,8 @@ std::optional<double> ray_share(const ShapeSet& set, const Hit& hit, const Squar
 
 /// Mean distance of the shares of all squares of a level from the rays'; checks that none is 0
 /// where a ray gets through.
-double mean_error(detail::SeenSquares& squares, const ShapeSet& set, const Hit& hit, int level) {
+double mean_error(detail::ConservativeVisibility& squares, const ShapeSet& set, const Hit& hit,
+                  int level) {
   const auto side = 1U << static_cast<unsigned>(level);
   double sum = 0;
   for (std::uint32_t i = 0; i < side * side; ++i) {
@@ -69,8 +70,8 @@ TEST_CASE("estimates of what is seen of squares are near the rays' share, and 0 
   for (const Pair& pair : pairs()) {
     const ShapeSet set = both(pair);
     const Hit hit = top_of_sphere();
-    detail::SeenSquares squares(set, turned_light());
-    squares.turn_to(hit);
+    detail::ConservativeVisibility squares(set, turned_light());
+    squares.set_shading_point(hit);
     INFO(pair.name);
     CHECK(mean_error(squares, set, hit, 3) < 0.03);
     CHECK(mean_error(squares, set, hit, 5) < 0.015);
@@ -82,8 +83,8 @@ TEST_CASE("squares within a square have no occluders that it has not", "[seen]")
     INFO(pair.name);
     const ShapeSet set = both(pair);
     const Hit hit = top_of_sphere();
-    detail::SeenSquares squares(set, turned_light());
-    squares.turn_to(hit);
+    detail::ConservativeVisibility squares(set, turned_light());
+    squares.set_shading_point(hit);
     for (std::uint32_t i = 0; i < 64; ++i) {
       SquarePlace place = {3, i % 8, i / 8};
       SquareView whole;

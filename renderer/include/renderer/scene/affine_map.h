@@ -14,7 +14,7 @@ struct SineCosine {
 SineCosine sine_cosine_degrees(double degrees);
 
 /// p ↦ linear·p + offset, right-handed world axes, column vectors.
-struct Transform {
+struct AffineMap {
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 
@@ -22,7 +22,7 @@ struct Transform {
   Eigen::Vector3d vector(const Eigen::Vector3d& v) const { return linear * v; }
 
   /// This map first, `next` after it.
-  Transform then(const Transform& next) const {
+  AffineMap then(const AffineMap& next) const {
     return {next.linear * linear, next.linear * offset + next.offset};
   }
 
@@ -30,19 +30,19 @@ struct Transform {
   bool usable() const;
 
   /// The inverse of a usable map.
-  Transform inverse() const;
+  AffineMap inverse() const;
 };
 
-Transform translation(const Eigen::Vector3d& by);
+AffineMap translation(const Eigen::Vector3d& by);
 
 /// @param factors along x, y, z; none zero. Negative ones mirror.
-Transform scaling(const Eigen::Vector3d& factors);
+AffineMap scaling(const Eigen::Vector3d& factors);
 
 /// Right-handed rotation (counterclockwise seen against the axis).
 /// @param axis of any length but zero
-Transform rotation(const Eigen::Vector3d& axis, double degrees);
+AffineMap rotation(const Eigen::Vector3d& axis, double degrees);
 
 /// Rotation about x, then about the fixed y, then about the fixed z axis, in degrees.
-Transform euler_rotation(const Eigen::Vector3d& degrees);
+AffineMap euler_rotation(const Eigen::Vector3d& degrees);
 
 } // namespace haarlight::renderer

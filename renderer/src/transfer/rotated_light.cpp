@@ -1,6 +1,6 @@
-#include <renderer/transfer/turned_light.h>
+#include <renderer/transfer/rotated_light.h>
 
-#include <renderer/scene/transform.h>
+#include <renderer/scene/affine_map.h>
 
 #include <algorithm>
 
@@ -12,21 +12,21 @@ constexpr int side_max = 1024;
 
 } // namespace
 
-Eigen::Matrix3f turn_of(const Eigen::Vector3d& yaw_pitch_roll) {
-  const Transform turn = rotation(Eigen::Vector3d::UnitY(), yaw_pitch_roll[0])
+Eigen::Matrix3f rotation_of(const Eigen::Vector3d& yaw_pitch_roll) {
+  const AffineMap turn = rotation(Eigen::Vector3d::UnitY(), yaw_pitch_roll[0])
                              .then(rotation(Eigen::Vector3d::UnitX(), yaw_pitch_roll[1]))
                              .then(rotation(Eigen::Vector3d::UnitZ(), yaw_pitch_roll[2]));
   return turn.linear.cast<float>();
 }
 
-TurnedLight::TurnedLight(const Light& light, int resolution)
+RotatedLight::RotatedLight(const Light& light, int resolution)
     : m_resolution(resolution), m_level(probe::turning_level(light.map(
                                     std::max(std::min(4 * resolution, side_max), resolution)))) {
   for (int axis = 0; axis < 3; ++axis)
     m_placed.col(axis) = light.to_world(Vec3::Unit(axis));
 }
 
-wavelet::Map TurnedLight::map(const Eigen::Matrix3f& turn) const {
+wavelet::Map RotatedLight::map(const Eigen::Matrix3f& turn) const {
   const Eigen::Matrix3f back = m_placed.transpose() * turn.transpose() * m_placed;
   return probe::turned_map(m_level, {back.col(0), back.col(1), back.col(2)}, m_resolution);
 }

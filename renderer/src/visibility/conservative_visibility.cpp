@@ -1,4 +1,4 @@
-#include "visibility/seen_squares.h"
+#include "visibility/conservative_visibility.h"
 
 #include "visibility/ray_lanes.h"
 
@@ -75,9 +75,9 @@ unsigned points_behind(const Points& points, const Obstacle& obstacle) {
 
 /// One square, and those of its points above the horizon that nothing hides so far. The points are
 /// worked out only once something may be in their way.
-class Glance {
+class VisibilityQuery {
 public:
-  Glance(const SquarePlace& square, const Vec3& normal)
+  VisibilityQuery(const SquarePlace& square, const Vec3& normal)
       : m_square(square), m_cap(wavelet::square_cap(square)), m_normal(normal) {}
 
   /// Takes away the points behind an obstacle. @return where the square surely lies of what that
@@ -133,10 +133,10 @@ private:
 
 } // namespace
 
-SeenSquares::SeenSquares(const ShapeSet& shapes, const Light& light)
+ConservativeVisibility::ConservativeVisibility(const ShapeSet& shapes, const Light& light)
     : m_shapes(shapes), m_light(light), m_visibility(shapes, light) {}
 
-void SeenSquares::turn_to(const Hit& from) {
+void ConservativeVisibility::set_shading_point(const Hit& from) {
   m_obstacles.clear();
   m_normal = m_light.to_light(from.normal);
   const Eigen::Vector3d origin = leave(from, from.normal).origin.cast<double>();
@@ -152,7 +152,7 @@ void SeenSquares::turn_to(const Hit& from) {
       add(solid, origin);
 }
 
-void SeenSquares::add(const Solid& solid, const Eigen::Vector3d& origin) {
+void ConservativeVisibility::add(const Solid& solid, const Eigen::Vector3d& origin) {
   Obstacle& added = m_obstacles.emplace_back();
   added.bounds = Cap::around_ball(solid.center - origin, solid.radius);
   added.bounds.axis = m_light.to_light(added.bounds.axis);
@@ -169,13 +169,15 @@ void SeenSquares::add(const Solid& solid, const Eigen::Vector3d& origin) {
         solid.to_object.vector(m_light.to_world(Vec3::Unit(i)).cast<double>()).cast<float>();
 }
 
-void SeenSquares::look(std::span<const SquarePlace> squares, std::span<SquareView> views) {
+void ConservativeVisibility::look(std::span<const SquarePlace> squares,
+                                  std::span<SquareView> views) {
   for (std::size_t i = 0; i < squares.size(); ++i)
     views[i] = view_of(squares[i], views[i].occluders);
 }
 
-SquareView SeenSquares::view_of(const SquarePlace& square, std::uint64_t occluders) const {
-  Glance glance(square, m_normal);
+SquareView ConservativeVisibility::view_of(const SquarePlace& square,
+                                           std::uint64_t occluders) const {
+  VisibilityQuery glance(square, m_normal);
   std::uint64_t in_part = 0;
   for (std::uint64_t rest = occluders; rest != 0; rest &= rest - 1) {
     const auto bit = static_cast<std::size_t>(std::countr_zero(rest));

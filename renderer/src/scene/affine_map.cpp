@@ -1,4 +1,4 @@
-#include <renderer/scene/transform.h>
+#include <renderer/scene/affine_map.h>
 
 #include <cassert>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double largest_coefficient = 1e18;
 
-bool moderate(const Transform& transform) {
+bool moderate(const AffineMap& transform) {
   const auto small = [](double x) { return std::abs(x) <= largest_coefficient; }; // false for NaN
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
@@ -48,35 +48,35 @@ SineCosine sine_cosine_degrees(double degrees) {
   }
 }
 
-bool Transform::usable() const { return moderate(*this) && moderate(inverse()); }
+bool AffineMap::usable() const { return moderate(*this) && moderate(inverse()); }
 
-Transform Transform::inverse() const {
-  Transform result;
+AffineMap AffineMap::inverse() const {
+  AffineMap result;
   result.linear = linear.inverse();
   result.offset = -(result.linear * offset);
   return result;
 }
 
-Transform translation(const Eigen::Vector3d& by) { return {Eigen::Matrix3d::Identity(), by}; }
+AffineMap translation(const Eigen::Vector3d& by) { return {Eigen::Matrix3d::Identity(), by}; }
 
-Transform scaling(const Eigen::Vector3d& factors) {
+AffineMap scaling(const Eigen::Vector3d& factors) {
   return {Eigen::Matrix3d(factors.asDiagonal()), Eigen::Vector3d::Zero()};
 }
 
-Transform rotation(const Eigen::Vector3d& axis, double degrees) {
+AffineMap rotation(const Eigen::Vector3d& axis, double degrees) {
   assert(axis.squaredNorm() > 0);
   const Eigen::Vector3d a = axis.stableNormalized();
   const SineCosine turn = sine_cosine_degrees(degrees);
   Eigen::Matrix3d cross;
   cross << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
   const Eigen::Matrix3d along = a * a.transpose();
-  Transform result;
+  AffineMap result;
   result.linear =
       turn.cosine * Eigen::Matrix3d::Identity() + turn.sine * cross + (1 - turn.cosine) * along;
   return result;
 }
 
-Transform euler_rotation(const Eigen::Vector3d& degrees) {
+AffineMap euler_rotation(const Eigen::Vector3d& degrees) {
   return rotation(Eigen::Vector3d::UnitX(), degrees.x())
       .then(rotation(Eigen::Vector3d::UnitY(), degrees.y()))
       .then(rotation(Eigen::Vector3d::UnitZ(), degrees.z()));
