@@ -7,7 +7,7 @@
 #include <support/progress.h>
 
 #include <renderer/film/render.h>
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/out_of_memory.h>
 #include <wavelet/file/output_file.h>
 

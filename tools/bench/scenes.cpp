@@ -2,7 +2,7 @@
 
 #include <bench/plan.h>
 
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
 
 namespace haarlight::bench {

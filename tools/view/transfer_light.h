@@ -4,7 +4,7 @@
 #include <view/packed_scene.h>
 
 #include <renderer/transfer/relight.h>
-#include <renderer/transfer/rotated_light.h>
+#include <renderer/transfer/relight.h>
 
 #include <vector>
 

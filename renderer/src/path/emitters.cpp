@@ -1,6 +1,6 @@
 #include "path/emitters.h"
 
-#include "shapes/shape_placement.h"
+#include "shapes/solid.h"
 
 #include <wavelet/base/trigonometry.h>
 

@@ -130,19 +130,11 @@ private:
   std::vector<probe::LightSample> m_samples;
 };
 
-/// A light that is a tree alone, as a probe of the tree's pixels.
-LightDistribution distribution_of_tree(const Light& light) {
-  const wavelet::Map map = light.map(1 << light.tree().levels);
-  probe::Image image(map.size, map.size);
-  image.rgb = map.rgb;
-  return LightDistribution(probe::Probe(image, probe::Mapping::Octahedral));
-}
-
 /// The probe's distribution, or that of a light which is a tree alone.
 std::shared_ptr<const LightDistribution> distribution_of(const Light& light) {
   if (const LightDistribution* owned_by_light = light.distribution())
     return {std::shared_ptr<const void>(), owned_by_light};
-  return std::make_shared<LightDistribution>(distribution_of_tree(light));
+  return std::make_shared<LightDistribution>(tree_as_probe(light));
 }
 
 } // namespace

@@ -2,7 +2,7 @@
 // reflectance is made at each point from a few values of the reflectance itself, where importance
 // sampling of it finds it large, and multiplied with the light's averages over the same squares.
 
-#include "samplers/lobe_sampling.h"
+#include "samplers/basic_samplers.h"
 #include "samplers/quadrant_tree.h"
 #include "samplers/sampler_factories.h"
 

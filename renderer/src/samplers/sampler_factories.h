@@ -26,6 +26,14 @@ std::unique_ptr<SamplerFactory> simple_factory(Arguments... arguments) {
   return std::make_unique<SimpleFactory>([=] { return std::make_unique<S>(arguments...); });
 }
 
+/// The finest squares of a light without a probe, as an octahedral probe.
+inline probe::Probe tree_as_probe(const Light& light) {
+  const wavelet::Map map = light.map(1 << light.tree().levels);
+  probe::Image image(map.size, map.size);
+  image.rgb = map.rgb;
+  return {image, probe::Mapping::Octahedral};
+}
+
 using MakeFactory = std::unique_ptr<SamplerFactory>(const LoadedScene& scene,
                                                     const SamplerOptions& options);
 

@@ -1,9 +1,10 @@
-#include <renderer/scene/scene_file.h>
+// Reading scene files. renderer/SCENE.md documents the format.
 
-#include "scene/scene_material.h"
-#include "scene/scene_object.h"
+#include "scene/scene_json.h"
 
 #include <renderer/film/film.h>
+#include <renderer/scene/scene.h>
+
 #include <wavelet/base/error.h>
 #include <wavelet/file/input_file.h>
 
@@ -11,10 +12,252 @@
 #include <map>
 
 namespace haarlight::renderer {
+namespace {
 
 using namespace detail;
 
-namespace {
+/// Sets a parameter if its key is present.
+void read_number(const SceneNode& model, std::string_view key, double low, double high,
+                 double& value) {
+  if (const auto node = model.find(key))
+    value = node->number_within(low, high);
+}
+
+Rgb read_albedo(const SceneNode& node) {
+  Rgb albedo = node.vector().array();
+  if ((albedo < 0).any() || (albedo > 1).any())
+    node.fail("must hold albedos between 0 and 1");
+  return albedo;
+}
+
+Rgb read_emission(const SceneNode& node) {
+  Rgb emission = node.vector().array();
+  if ((emission < 0).any())
+    node.fail("must hold radiances, none below 0");
+  return emission;
+}
+
+void read_colour(const SceneNode& model, std::string_view key, Rgb& value) {
+  if (const auto node = model.find(key))
+    value = read_albedo(*node);
+}
+
+void read_roughness(const SceneNode& node, double& roughness) {
+  read_number(node, "roughness", 1e-3, 1, roughness);
+}
+
+void read_exponent(const SceneNode& node, double& exponent) {
+  read_number(node, "exponent", 1e-3, 1e6, exponent);
+}
+
+void read_own(const SceneNode& node, brdf::Ggx& model) { read_roughness(node, model.roughness); }
+void read_own(const SceneNode& node, brdf::Ward& model) { read_roughness(node, model.roughness); }
+void read_own(const SceneNode& node, brdf::BlinnPhong& model) {
+  read_exponent(node, model.exponent);
+}
+void read_own(const SceneNode& node, brdf::AshikhminShirley& model) {
+  read_exponent(node, model.exponent);
+}
+void read_own(const SceneNode& node, brdf::Lafortune& model) {
+  read_exponent(node, model.exponent);
+  read_number(node, "lobe_xy", -10, 10, model.c_xy);
+  read_number(node, "lobe_z", -10, 10, model.c_z);
+  if (model.c_xy == 0 && model.c_z == 0)
+    node.fail("lobe_xy and lobe_z must not both be zero");
+}
+
+template <class M>
+brdf::AnalyticBrdf read(const SceneNode& node) {
+  M model;
+  read_colour(node, "diffuse", model.diffuse);
+  read_colour(node, "specular", model.specular);
+  read_own(node, model);
+  return model;
+}
+
+/// What a model is called, the keys it has besides its colours, and how it is read.
+struct ModelReader {
+  std::string_view name;
+  Names keys;
+  brdf::AnalyticBrdf (*read)(const SceneNode&);
+};
+
+const std::vector<ModelReader>& model_readers() {
+  static const std::vector<ModelReader> readers = {
+      {"ggx", {"roughness"}, read<brdf::Ggx>},
+      {"blinn-phong", {"exponent"}, read<brdf::BlinnPhong>},
+      {"ward", {"roughness"}, read<brdf::Ward>},
+      {"lafortune", {"exponent", "lobe_xy", "lobe_z"}, read<brdf::Lafortune>},
+      {"ashikhmin-shirley", {"exponent"}, read<brdf::AshikhminShirley>}};
+  return readers;
+}
+
+Names model_names() {
+  Names names;
+  for (const ModelReader& reader : model_readers())
+    names.push_back(reader.name);
+  return names;
+}
+
+std::string joined(const Names& names) {
+  std::string text;
+  for (const std::string_view name : names)
+    text.append(text.empty() ? "" : ", ").append(name);
+  return text;
+}
+
+std::optional<brdf::AnalyticBrdf> read_model(const SceneNode& material) {
+  for (const ModelReader& reader : model_readers())
+    if (const auto node = material.find(reader.name)) {
+      Names keys = {"diffuse", "specular"};
+      keys.insert(keys.end(), reader.keys.begin(), reader.keys.end());
+      node->allow(keys);
+      return reader.read(*node);
+    }
+  return std::nullopt;
+}
+
+Shape read_sphere(const SceneNode& node) {
+  return Sphere{node.at("center").vector(), node.at("radius").positive()};
+}
+
+Shape read_plane(const SceneNode& node) {
+  return Plane{node.at("point").vector(), node.at("normal").direction()};
+}
+
+Shape read_disk(const SceneNode& node) {
+  return Disk{node.at("center").vector(), node.at("normal").direction(),
+              node.at("radius").positive()};
+}
+
+Shape read_box(const SceneNode& node) {
+  const Box box{node.at("min").vector(), node.at("max").vector()};
+  if (!(box.low.array() < box.high.array()).all())
+    node.at("max").fail("must be above min in x, y and z");
+  return box;
+}
+
+/// Two points that must differ: the ends of a cylinder or a cone.
+Vec3 read_other_end(const SceneNode& node, const char* key, const Vec3& base) {
+  Vec3 end = node.at(key).vector();
+  if (end == base)
+    node.at(key).fail("must not be the same point as base");
+  return end;
+}
+
+Shape read_cylinder(const SceneNode& node) {
+  const Vec3 base = node.at("base").vector();
+  return Cylinder{base, read_other_end(node, "top", base), node.at("radius").positive()};
+}
+
+Shape read_cone(const SceneNode& node) {
+  const Vec3 base = node.at("base").vector();
+  return Cone{base, read_other_end(node, "apex", base), node.at("radius").positive()};
+}
+
+Shape read_torus(const SceneNode& node) {
+  const Torus torus{node.at("center").vector(), node.at("axis").direction(),
+                    node.at("major_radius").positive(), node.at("minor_radius").positive()};
+  if (!(torus.minor_radius < torus.major_radius))
+    node.at("minor_radius").fail("must be below major_radius");
+  return torus;
+}
+
+/// What a shape type is called, the keys it has of its own, and how it is read.
+struct ShapeReader {
+  std::string_view type;
+  Names keys;
+  Shape (*read)(const SceneNode&);
+};
+
+const std::vector<ShapeReader>& shape_readers() {
+  static const std::vector<ShapeReader> readers = {
+      {"sphere", {"center", "radius"}, read_sphere},
+      {"plane", {"point", "normal"}, read_plane},
+      {"disk", {"center", "normal", "radius"}, read_disk},
+      {"box", {"min", "max"}, read_box},
+      {"cylinder", {"base", "top", "radius"}, read_cylinder},
+      {"cone", {"base", "apex", "radius"}, read_cone},
+      {"torus", {"center", "axis", "major_radius", "minor_radius"}, read_torus}};
+  return readers;
+}
+
+const ShapeReader& reader_of(const SceneNode& type) {
+  const std::string name = type.text();
+  Names known;
+  for (const ShapeReader& reader : shape_readers()) {
+    if (reader.type == name)
+      return reader;
+    known.push_back(reader.type);
+  }
+  type.fail_unknown("shape", name, known);
+}
+
+Eigen::Vector3d to_vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+AffineMap read_rotation(const SceneNode& node) {
+  if (!node.is_object())
+    return euler_rotation(to_vector(node.numbers(3)));
+  node.allow({"axis", "angle"});
+  return rotation(node.at("axis").direction().cast<double>(), node.at("angle").number());
+}
+
+AffineMap read_scaling(const SceneNode& node) {
+  const Eigen::Vector3d factors =
+      node.is_number() ? Eigen::Vector3d::Constant(node.number()) : to_vector(node.numbers(3));
+  if ((factors.array() == 0).any())
+    node.fail("must not be zero");
+  return scaling(factors);
+}
+
+AffineMap read_matrix(const SceneNode& node) {
+  const std::vector<double> m = node.numbers(16);
+  if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+    node.fail("must end with the row 0, 0, 0, 1");
+  AffineMap result;
+  result.linear << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  result.offset << m[3], m[7], m[11];
+  return result;
+}
+
+AffineMap read_step(const SceneNode& node) {
+  const Names known = {"translate", "rotate", "scale", "matrix"};
+  node.allow(known);
+  if (node.keys().size() != 1)
+    node.fail("must hold exactly one of translate, rotate, scale, matrix; put several steps in an "
+              "array, in the order they apply");
+  if (const auto step = node.find("translate"))
+    return translation(to_vector(step->numbers(3)));
+  if (const auto step = node.find("rotate"))
+    return read_rotation(*step);
+  if (const auto step = node.find("scale"))
+    return read_scaling(*step);
+  return read_matrix(node.at("matrix"));
+}
+
+AffineMap read_transform(const SceneNode& node) {
+  AffineMap result;
+  if (node.is_object())
+    result = read_step(node);
+  else
+    for (const SceneNode& step : node.elements())
+      result = result.then(read_step(step));
+  if (!result.usable())
+    node.fail("cannot be inverted within the range of numbers: flattens, or scales too far");
+  return result;
+}
+
+ObjectDescription read_object(const SceneNode& node) {
+  const ShapeReader& reader = reader_of(node.at("type"));
+  Names keys = {"type", "material", "transform", "name"};
+  keys.insert(keys.end(), reader.keys.begin(), reader.keys.end());
+  node.allow(keys);
+  ObjectDescription object;
+  object.shape = reader.read(node);
+  if (const auto transform = node.find("transform"))
+    object.transform = read_transform(*transform);
+  return object;
+}
 
 constexpr std::size_t scene_bytes_max = std::size_t{1} << 26;
 
@@ -177,6 +420,8 @@ std::vector<ObjectDescription> read_objects(const SceneNode& node,
 }
 
 } // namespace
+
+using namespace detail;
 
 SceneDescription load_scene(const std::string& path) {
   const InputFile file(path);

@@ -1,7 +1,6 @@
 #include <renderer/shapes/shapes.h>
 
-#include "shapes/shape_canonical.h"
-#include "shapes/shape_placement.h"
+#include "shapes/solid.h"
 
 #include <algorithm>
 #include <bit>

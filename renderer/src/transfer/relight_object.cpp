@@ -1,16 +1,119 @@
 // Transfer that is all but one object's visibility: the object moves, its shadow with it.
-#include <renderer/transfer/relight.h>
 
-#include "transfer/sphere_occlusion.h"
+#include "visibility/cap_region.h"
+
+#include <renderer/transfer/relight.h>
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/product/multiply.h>
 #include <wavelet/square/sphere_map.h>
+#include <wavelet/tree/tree.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
+#include <vector>
 
 namespace haarlight::renderer {
 namespace {
+
+/// Integrates trees over caps: a square wholly inside counts with its average, one wholly outside
+/// not at all, so that only what the cap's edge crosses is looked into. Shared by threads.
+class SphereOcclusion {
+public:
+  SphereOcclusion();
+
+  /// ∫∫ T over the cap, per channel; the whole square's area is 1.
+  Rgb within(const wavelet::TreeView& tree, const Cap& cap) const;
+
+private:
+  struct Walk {
+    const wavelet::TreeView& tree;
+    const Cap& cap;
+    float negligible; ///< luminance times area
+  };
+  struct Square {
+    std::uint32_t index; ///< in a complete tree: quadrant q of i is 4 i + 1 + q
+    int level;
+  };
+
+  Float4 within(const Walk& walk, std::uint32_t node, Float4 mean, const Square& square) const;
+
+  std::vector<wavelet::SquareCap> m_bounds; ///< as in a complete tree
+};
+
+/// Bounds of squares are kept down to this level.
+constexpr int kept_levels = 8;
+
+/// A cap's edge counts as straight within squares no coarser than this level, no wider than this
+/// share of the cap, …
+constexpr int straight_level = 5;
+constexpr float straight_share = 0.25F;
+
+/// … of any size from this level on, …
+constexpr int finest_level = kept_levels;
+
+/// … and where a square holds less than this share of the whole.
+constexpr float negligible_share = 1e-3F;
+
+/// Half a square's mean width, of the radius of the circle around it.
+constexpr float half_width = 0.8F;
+
+bool edge_is_straight(const wavelet::SquareCap& bounds, int level, const Cap& cap) {
+  return level >= straight_level && bounds.sine <= straight_share * cap.sine;
+}
+
+/// The share of a square on the cap's side of its edge, by the distance of its centre from it.
+float share_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
+  const float along = cap.axis.dot(bounds.centre);
+  const float across = std::sqrt(std::max(1 - along * along, 0.0F));
+  const float inside = cap.sine * along - cap.cosine * across;
+  return std::clamp(0.5F + 0.5F * inside / (half_width * bounds.sine), 0.0F, 1.0F);
+}
+
+using wavelet::RegionPart;
+using wavelet::SquarePlace;
+
+SphereOcclusion::SphereOcclusion() {
+  std::vector<SquarePlace> places = {SquarePlace{}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    m_bounds.push_back(wavelet::square_cap(places[i]));
+    if (places[i].level < kept_levels)
+      for (unsigned q = 0; q < 4; ++q)
+        places.push_back(places[i].quadrant(q));
+  }
+}
+
+Rgb SphereOcclusion::within(const wavelet::TreeView& tree, const Cap& cap) const {
+  const Walk walk = {tree, cap, negligible_share * luminance(tree.mean)};
+  return wavelet::to_rgb(within(walk, tree.root(), wavelet::to_lanes(tree.mean), {0, 0}));
+}
+
+Float4 SphereOcclusion::within(const Walk& walk, std::uint32_t node, Float4 mean,
+                               const Square& square) const {
+  const wavelet::SquareCap& bounds = m_bounds[square.index];
+  const float weight = wavelet::lane_sum(mean * wavelet::luminance_lanes);
+  const RegionPart part = walk.cap.classify(bounds);
+  if (part == RegionPart::Outside || !(weight > 0))
+    return Float4{};
+  if (part == RegionPart::Inside)
+    return mean;
+  const bool whole = node == wavelet::no_node;
+  if (square.level == finest_level || weight * power_of_two(-2 * square.level) <= walk.negligible ||
+      (whole && edge_is_straight(bounds, square.level, walk.cap)))
+    return mean * share_inside(bounds, walk.cap);
+  std::array<Float4, 4> means = {mean, mean, mean, mean};
+  std::array<std::uint32_t, 4> children = {node, node, node, node};
+  if (!whole) {
+    means = walk.tree.details(node).children(mean);
+    children = walk.tree.children(node);
+  }
+  Float4 sum = {};
+  for (unsigned q = 0; q < 4; ++q)
+    sum += within(walk, children[q], means[q], {4 * square.index + 1 + q, square.level + 1});
+  return 0.25F * sum;
+}
 
 /// The moved object by itself.
 class MovedObject {

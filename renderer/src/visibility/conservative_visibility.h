@@ -2,16 +2,49 @@
 // How much of a square the objects of a scene leave visible from a point, by estimate: quick enough
 // to be asked of every square that a sampler has to do with.
 
-#include "visibility/cap_region.h"
-#include "visibility/outline.h"
+#include "visibility/cap.h"
 
+#include <renderer/shapes/shapes.h>
 #include <renderer/visibility/visibility.h>
 
+#include <wavelet/product/region.h>
 #include <wavelet/product/square_visibility.h>
+#include <wavelet/square/square_cap.h>
 
+#include <array>
 #include <vector>
 
 namespace haarlight::renderer::detail {
+/// Six planes at most, some of them twice; all directions to the box are on the positive side of
+/// each.
+struct Outline {
+  std::array<Float4, 2> x = {}; ///< unit normals; all zero from within
+  std::array<Float4, 2> y = {};
+  std::array<Float4, 2> z = {};
+
+  void set(int plane, const Vec3& normal) {
+    const auto batch = static_cast<std::size_t>(plane / 4);
+    x[batch][plane % 4] = normal.x();
+    y[batch][plane % 4] = normal.y();
+    z[batch][plane % 4] = normal.z();
+  }
+
+  /// Where the squares of a cap's bounds lie; Inside if all of them is behind the box.
+  wavelet::RegionPart classify(const wavelet::SquareCap& bounds) const {
+    Int4 beside = {};
+    Int4 within = ~beside;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Float4 height =
+          x[i] * bounds.centre.x() + y[i] * bounds.centre.y() + z[i] * bounds.centre.z();
+      beside |= height < broadcast<Float4>(-bounds.sine);
+      within &= height > broadcast<Float4>(bounds.sine);
+    }
+    if ((beside[0] | beside[1] | beside[2] | beside[3]) != 0)
+      return wavelet::RegionPart::Outside;
+    return (within[0] & within[1] & within[2] & within[3]) != 0 ? wavelet::RegionPart::Inside
+                                                                : wavelet::RegionPart::Partial;
+  }
+};
 
 /// What may be in the way, as seen from some point; directions are the light's.
 struct Obstacle {

@@ -56,37 +56,6 @@ private:
   wavelet::TreeView m_view;
 };
 
-/// The visibilities at one point after another.
-class PointMasks {
-public:
-  PointMasks(const VisibilityTrees& visibility, int objects, int levels)
-      : m_visibility(visibility), m_levels(levels), m_trees(static_cast<std::size_t>(objects)) {}
-
-  /// Of all objects that may be in the way; valid until the next call. The reflectance holds the
-  /// horizon itself.
-  std::span<const wavelet::TreeView> at(const Hit& hit) {
-    m_views.clear();
-    for (std::size_t i = 0; i < m_trees.size(); ++i) {
-      const int object = static_cast<int>(i);
-      if (!m_visibility.may_hide(object, hit))
-        continue;
-      if (object == hit.object)
-        m_visibility.own(hit, m_levels, m_builder, m_trees[i]);
-      else
-        m_visibility.object(object, hit, m_levels, m_builder, m_trees[i]);
-      m_views.push_back(m_trees[i].view());
-    }
-    return m_views;
-  }
-
-private:
-  const VisibilityTrees& m_visibility;
-  int m_levels;
-  wavelet::RegionTreeBuilder m_builder;
-  std::vector<wavelet::Tree> m_trees; ///< by object
-  std::vector<wavelet::TreeView> m_views;
-};
-
 /// The reflectance times what is left of the light, over the squares of a masked product.
 class ReflectedLight {
 public:
@@ -169,7 +138,7 @@ public:
   IntegralShader(const LoadedScene& scene, const ProductIntegralOptions& options,
                  const wavelet::TreeView& light, const VisibilityTrees& visibility)
       : m_scene(scene), m_options(options), m_product(light),
-        m_masks(visibility, scene.shapes().size(), options.levels),
+        m_occluders(visibility, scene.shapes().size(), options.levels),
         m_reflected(m_masked, options.split_share) {}
 
   void reset() override {}
@@ -183,7 +152,7 @@ public:
         m_product.build(material.reflectance(point), m_options.product);
     ++m_cost.points;
     m_cost.leaves += product.leaf_count();
-    const auto leaves = m_masked.build(product, m_masks.at(seen.hit));
+    const auto leaves = m_masked.build(product, m_occluders.at(seen.hit));
     sums.add(m_reflected.integral(point, material, leaves) * wavelet::sphere_area, true, 0,
              Technique::Fixed);
   }
@@ -193,7 +162,7 @@ private:
   const ProductIntegralOptions& m_options;
   wavelet::AdaptiveProduct m_product;
   wavelet::MaskedProduct m_masked;
-  PointMasks m_masks;
+  OccluderTrees m_occluders;
   ReflectedLight m_reflected;
 };
 

@@ -1,15 +1,23 @@
 #include <renderer/visibility/visibility.h>
 
-#include "visibility/horizon_region.h"
-#include "visibility/solid_region.h"
+#include "shapes/solid.h"
+#include "visibility/cap.h"
 
+#include <renderer/light/light.h>
+#include <renderer/shapes/shapes.h>
+
+#include <wavelet/product/region.h>
+#include <wavelet/square/square_cap.h>
+
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
 
 namespace haarlight::renderer {
-
-using namespace detail;
-using wavelet::RegionTreeBuilder;
-using wavelet::Tree;
 
 namespace detail {
 
@@ -22,6 +30,263 @@ struct Occluder {
 } // namespace detail
 
 namespace {
+
+using namespace detail;
+using wavelet::RegionPart;
+using wavelet::RegionTreeBuilder;
+using wavelet::SquareCap;
+using wavelet::SquarePlace;
+using wavelet::Tree;
+
+/// 1 within a cap and 0 outside, or the reverse.
+class CapRegion final : public wavelet::Region {
+public:
+  CapRegion(const Cap& cap, bool reverse) : m_cap(cap), m_reverse(reverse) {}
+
+  RegionPart classify(const SquarePlace& square) const override {
+    const RegionPart part = m_cap.classify(wavelet::square_cap(square));
+    if (part == RegionPart::Partial)
+      return part;
+    return (part == RegionPart::Inside) != m_reverse ? RegionPart::Inside : RegionPart::Outside;
+  }
+
+  float coverage(const SquarePlace& square) const override {
+    const Vec3& a = m_cap.axis;
+    const float inside = wavelet::positive_share_of(square, [&](Float4 x, Float4 y, Float4 z) {
+      const Float4 dx = x - a.x();
+      const Float4 dy = y - a.y();
+      const Float4 dz = z - a.z();
+      return m_cap.chord_squared - (dx * dx + dy * dy + dz * dz);
+    });
+    return m_reverse ? 1 - inside : inside;
+  }
+
+private:
+  Cap m_cap;
+  bool m_reverse;
+};
+
+/// Points of a square that rays sample it by: a (0, 2)-net of 16 (Sobol'), as are its first 4.
+inline constexpr std::size_t net_size = 16;
+Vec2 net_point(const wavelet::SquarePlace& square, std::size_t index);
+
+/// Rays from one point against one shape; directions are the light's.
+class SolidRays {
+public:
+  /// @param light must outlive this, and so must the solid
+  SolidRays(const Solid& solid, const Eigen::Vector3d& origin, const Light& light);
+
+  bool intersects(const Vec3& direction) const;
+
+  /// Whether no ray into the cap meets the shape; may say no where it would be hard to tell.
+  bool all_miss(const wavelet::SquareCap& cap) const;
+  /// Whether all of them do; likewise.
+  bool all_meet(const wavelet::SquareCap& cap) const;
+
+private:
+  /// How far the whole shape lies beyond a plane through the origin of the rays, on the side that
+  /// its unit normal points to; negative if not all of it does.
+  double clearance(const Vec3& normal) const;
+  void find_tube(const Eigen::Vector3d& origin);
+  Eigen::Vector3d object_direction(const Vec3& direction) const;
+
+  const Light& m_light;
+  const Solid& m_solid;
+  Cap m_bounds;                    ///< around the shape's bounding sphere
+  std::vector<Cap> m_tube;         ///< of a torus: around balls that hold all of its tube …
+  std::vector<Cap> m_core;         ///< … and around such as lie within it
+  Eigen::Vector3d m_to_shape;      ///< from the origin to the shape's own origin
+  Eigen::Vector3d m_object_origin; ///< the rays', as the shape sees it
+};
+
+/// 1 where rays miss a shape.
+class SolidRegion final : public wavelet::Region {
+public:
+  SolidRegion(const Solid& solid, const Eigen::Vector3d& origin, const Light& light)
+      : m_rays(solid, origin, light) {}
+
+  wavelet::RegionPart classify(const wavelet::SquarePlace& square) const override;
+  float coverage(const wavelet::SquarePlace& square) const override;
+
+private:
+  SolidRays m_rays;
+};
+
+/// Wide caps have no pyramid around them.
+constexpr float least_cosine = 0.5F;
+
+constexpr std::array<std::array<float, 2>, 4> corners = {{{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+
+/// Directions, as seen from the axis of a cap, in which a plane may separate it from a shape: the
+/// first is that of the shape's middle.
+constexpr std::array<std::array<float, 2>, 5> ways = {
+    {{1, 0}, {0.7071F, 0.7071F}, {0.7071F, -0.7071F}, {0.3827F, 0.9239F}, {0.3827F, -0.9239F}}};
+
+/// By how much the best of them is turned to either side, in turn.
+constexpr std::array<float, 5> turns = {0.4F, 0.2F, 0.1F, 0.05F, 0.025F};
+
+/// What a map stretches vectors by at most; exact if it stretches all alike.
+double stretch_bound(const Eigen::Matrix3d& linear) {
+  return std::sqrt((linear.transpose() * linear).cwiseAbs().rowwise().sum().maxCoeff());
+}
+
+Vec2 net_point(const SquarePlace& square, std::size_t index) {
+  static constexpr std::array<std::uint8_t, net_size> columns = {0, 8, 4, 12, 2, 10, 6, 14,
+                                                                 1, 9, 5, 13, 3, 11, 7, 15};
+  static constexpr std::array<std::uint8_t, net_size> rows = {0,  8, 12, 4,  10, 2,  6, 14,
+                                                              15, 7, 3,  11, 5,  13, 9, 1};
+  const float side = power_of_two(-square.level);
+  const auto at = [&](std::uint32_t corner, std::uint8_t step) {
+    return (static_cast<float>(corner) + (static_cast<float>(step) + 0.5F) / net_size) * side;
+  };
+  return {at(square.column, columns[index]), at(square.row, rows[index])};
+}
+
+SolidRays::SolidRays(const Solid& solid, const Eigen::Vector3d& origin, const Light& light)
+    : m_light(light), m_solid(solid),
+      m_bounds(Cap::around_ball(solid.center - origin, solid.radius)),
+      m_to_shape(solid.to_world.offset - origin), m_object_origin(solid.to_object.point(origin)) {
+  m_bounds.axis = light.to_light((solid.center - origin).normalized().cast<float>());
+  if (solid.kind == SolidKind::Torus)
+    find_tube(origin);
+}
+
+/// So that what is seen through the ring is told apart from it.
+void SolidRays::find_tube(const Eigen::Vector3d& origin) {
+  constexpr int balls = 48;
+  constexpr double half_step = 180.0 / balls;
+  // A ball reaches from its centre to the tube's surface half a step along the ring.
+  const double along = 2 * (1 + m_solid.tube) * sine_cosine_degrees(half_step / 2).sine;
+  const double outer = std::hypot(m_solid.tube, along) * stretch_bound(m_solid.to_world.linear);
+  const double inner = m_solid.tube / stretch_bound(m_solid.to_object.linear);
+  for (int i = 0; i < balls; ++i) {
+    const SineCosine angle = sine_cosine_degrees(2 * half_step * i);
+    const Eigen::Vector3d middle = m_solid.to_world.point({angle.cosine, angle.sine, 0}) - origin;
+    const Vec3 axis = m_light.to_light(middle.normalized().cast<float>());
+    m_tube.push_back(Cap::around_ball(middle, outer));
+    m_tube.back().axis = axis;
+    m_core.push_back(Cap::around_ball(middle, inner));
+    m_core.back().axis = axis;
+  }
+}
+
+Eigen::Vector3d SolidRays::object_direction(const Vec3& direction) const {
+  return m_solid.to_object.vector(m_light.to_world(direction).cast<double>());
+}
+
+bool SolidRays::intersects(const Vec3& direction) const {
+  return canonical_distance(m_solid, m_object_origin, object_direction(direction)) < no_hit;
+}
+
+double SolidRays::clearance(const Vec3& normal) const {
+  const Eigen::Vector3d n = m_light.to_world(normal).cast<double>();
+  return n.dot(m_to_shape) - canonical_support(m_solid, -(m_solid.to_world.linear.transpose() * n));
+}
+
+bool SolidRays::all_miss(const SquareCap& cap) const {
+  const auto is_beside = [&](const Cap& bounds) {
+    return bounds.classify(cap) == RegionPart::Outside;
+  };
+  if (is_beside(m_bounds) || (!m_tube.empty() && std::ranges::all_of(m_tube, is_beside)))
+    return true;
+  const Vec3 aside = m_bounds.axis - m_bounds.axis.dot(cap.centre) * cap.centre;
+  const float distance = aside.norm();
+  if (cap.cosine < least_cosine || distance < 1e-6F)
+    return false;
+  const Vec3 t = aside / distance;
+  const Vec3 b = cap.centre.cross(t);
+  Vec2 best = Vec2::UnitX();
+  double most = -no_hit;
+  const auto try_way = [&](const Vec2& way) {
+    const double found =
+        clearance(cap.cosine * (way.x() * t + way.y() * b) - cap.sine * cap.centre);
+    if (found > most) {
+      most = found;
+      best = way;
+    }
+    return most > 0;
+  };
+  for (const auto& way : ways)
+    if (try_way({way[0], way[1]}))
+      return true;
+  for (const float turn : turns) {
+    const Vec2 side = turn * Vec2(-best.y(), best.x());
+    const Vec2 left = (best + side).normalized();
+    const Vec2 right = (best - side).normalized();
+    if (try_way(left) || try_way(right))
+      return true;
+  }
+  return false;
+}
+
+bool SolidRays::all_meet(const SquareCap& cap) const {
+  if (m_solid.kind == SolidKind::Torus) // which is not convex
+    return std::ranges::any_of(
+        m_core, [&](const Cap& core) { return core.classify(cap) == RegionPart::Inside; });
+  if (cap.cosine < least_cosine)
+    return false;
+  const Frame frame = frame_about(cap.centre);
+  const float reach = cap.sine / cap.cosine;
+  return std::ranges::all_of(corners, [&](const auto& corner) {
+    return intersects(frame.n + reach * (corner[0] * frame.t + corner[1] * frame.b));
+  });
+}
+
+RegionPart SolidRegion::classify(const SquarePlace& square) const {
+  const SquareCap cap = wavelet::square_cap(square);
+  if (m_rays.all_miss(cap))
+    return RegionPart::Inside;
+  return m_rays.all_meet(cap) ? RegionPart::Outside : RegionPart::Partial;
+}
+
+float SolidRegion::coverage(const SquarePlace& square) const {
+  int missed = 0;
+  for (std::size_t i = 0; i < net_size; ++i)
+    missed += m_rays.intersects(wavelet::square_to_sphere(net_point(square, i))) ? 0 : 1;
+  return static_cast<float>(missed) / net_size;
+}
+
+/// Self-occlusion: 0 below the horizon of a hit and where the shape that it lies on occludes
+/// itself, 1 elsewhere.
+class HorizonRegion final : public wavelet::Region {
+public:
+  /// @param normal in the light's frame
+  /// @param own    the shape, if it is not convex
+  HorizonRegion(const Vec3& normal, const std::optional<SolidRays>& own)
+      : m_normal(normal), m_horizon(Cap::half_space(normal), false), m_own(own) {}
+
+  RegionPart classify(const SquarePlace& square) const override {
+    const RegionPart part = m_horizon.classify(square);
+    return part == RegionPart::Inside && m_own ? RegionPart::Partial : part;
+  }
+
+  float coverage(const SquarePlace& square) const override {
+    const float above = m_horizon.coverage(square);
+    return m_own && above > 0 ? above * unoccluded_fraction(square) : above;
+  }
+
+private:
+  /// Of the part of a square above the horizon; takes more rays where the first few disagree.
+  float unoccluded_fraction(const SquarePlace& square) const {
+    constexpr std::size_t few = 4;
+    float all = 0;
+    float missed = 0;
+    for (std::size_t i = 0; i < net_size; ++i) {
+      if (i == few && all > 0 && (missed == 0 || missed == all))
+        break;
+      const Vec3 w = wavelet::square_to_sphere(net_point(square, i));
+      if (!(m_normal.dot(w) > 0))
+        continue;
+      ++all;
+      missed += m_own->intersects(w) ? 0 : 1;
+    }
+    return all > 0 ? missed / all : 1;
+  }
+
+  Vec3 m_normal;
+  CapRegion m_horizon;
+  std::optional<SolidRays> m_own;
+};
 
 /// Where rays to the side that is seen start.
 Eigen::Vector3d origin_of(const Hit& from) {
@@ -42,6 +307,10 @@ CapRegion around_sphere(const Solid& sphere, const Eigen::Vector3d& origin, cons
 }
 
 } // namespace
+
+using namespace detail;
+using wavelet::RegionTreeBuilder;
+using wavelet::Tree;
 
 VisibilityTrees::VisibilityTrees(const ShapeSet& shapes, const Light& light)
     : m_light(light), m_occluders(static_cast<std::size_t>(shapes.size())) {
@@ -79,13 +348,13 @@ bool VisibilityTrees::may_hide(int object, const Hit& from) const {
          from.normal.cast<double>().dot(solid->center - origin_of(from)) > -solid->radius;
 }
 
-void VisibilityTrees::own(const Hit& from, int levels, bool cosine, RegionTreeBuilder& builder,
+void VisibilityTrees::own(const Hit& from, int levels, RegionTreeBuilder& builder,
                           Tree& out) const {
   std::optional<SolidRays> rays;
   if (shadows_itself(from.object))
     rays.emplace(*m_occluders[static_cast<std::size_t>(from.object)].solid, origin_of(from),
                  m_light);
-  builder.build(HorizonRegion(m_light.to_light(from.normal), rays, cosine), levels, out);
+  builder.build(HorizonRegion(m_light.to_light(from.normal), rays), levels, out);
 }
 
 Tree VisibilityTrees::object(int object, const Hit& from, int levels) const {
@@ -102,11 +371,20 @@ Tree VisibilityTrees::own(const Hit& from, int levels) const {
   return tree;
 }
 
-Tree VisibilityTrees::local(const Hit& from, int levels) const {
-  RegionTreeBuilder builder;
-  Tree tree;
-  own(from, levels, true, builder, tree);
-  return tree;
+std::span<const wavelet::TreeView> OccluderTrees::at(const Hit& hit, int without) {
+  m_views.clear();
+  for (std::size_t i = 0; i < m_trees.size(); ++i) {
+    const int object = static_cast<int>(i);
+    if (object == without || !m_visibility.may_hide(object, hit))
+      continue;
+    if (object == hit.object)
+      m_visibility.own(hit, m_levels, m_builder, m_trees[i]);
+    else
+      m_visibility.object(object, hit, m_levels, m_builder, m_trees[i]);
+    if (!m_trees[i].links.empty() || (m_trees[i].mean != 1).any())
+      m_views.push_back(m_trees[i].view());
+  }
+  return m_views;
 }
 
 } // namespace haarlight::renderer

@@ -2,7 +2,7 @@
 
 #include "visibility/conservative_visibility.h"
 #include "occluders.h"
-#include "shapes/shape_canonical.h"
+#include "shapes/solid.h"
 #include "visibility/ray_lanes.h"
 
 #include <wavelet/square/sphere_map.h>

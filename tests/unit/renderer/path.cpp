@@ -1,6 +1,6 @@
 // Paths: furnaces, a brute-force path tracer, and the parts they are made of.
 
-#include "path/path_vertex.h"
+#include "path/emitters.h"
 #include "sampler_fixture.h"
 #include "temporary_folder.h"
 

@@ -1,7 +1,7 @@
 // Whether the variance that a pixel reports of itself is the spread of its estimates over seeds.
 
 #include "crowded_scene.h"
-#include "film/pixel_sums.h"
+#include "film/film_rendering.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,6 @@
 
 #include <renderer/film/render.h>
 #include <renderer/transfer/relight.h>
-#include <renderer/transfer/rotated_light.h>
 
 #include <wavelet/base/error.h>
 #include <wavelet/base/parallel.h>

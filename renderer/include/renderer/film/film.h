@@ -12,8 +12,16 @@ namespace haarlight::renderer {
 /// Pixels in one film at most: its arrays then take 2.3 GiB.
 inline constexpr long long film_pixels_max = 1LL << 26;
 
-/// Why a film of this size cannot be, in words; empty if it can.
-std::string validate_film_size(long long width, long long height);
+/// An error message for a film size that is not allowed; empty if it is.
+inline std::string validate_film_size(long long width, long long height) {
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  if (width < 1 || height < 1)
+    return "a film of " + size + " pixels has no area";
+  if (width > film_pixels_max / height)
+    return "a film of " + size + " pixels is too large, " + std::to_string(film_pixels_max) +
+           " pixels are the limit";
+  return {};
+}
 
 /// Row 0 is the top row, x runs to the right; pixel (x, y) has index y·width + x.
 struct Film {

@@ -2,7 +2,7 @@
 // From film coordinates to rays.
 
 #include <renderer/scene/scene.h>
-#include <renderer/shapes/ray.h>
+#include <renderer/shapes/shape.h>
 
 namespace haarlight::renderer {
 

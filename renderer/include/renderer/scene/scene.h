@@ -1,6 +1,6 @@
 #pragma once
-// A scene in words: which files, which shapes, which camera, as plain values. Nothing is loaded
-// yet. renderer/SCENE.md documents the file format; <renderer/scene/scene_file.h> reads it.
+// A scene in words: which files, which shapes, which camera, as plain values. No
+// files are loaded.
 
 #include <renderer/scene/affine_map.h>
 #include <renderer/shapes/shape.h>
@@ -72,5 +72,14 @@ struct SceneDescription {
   std::vector<std::string> object_names; ///< of the objects in order, all different but for empty
                                          ///< ones; may be shorter than `objects`
 };
+
+/// Reads and checks a scene file; the files it names are not opened. renderer/SCENE.md documents
+/// the format.
+/// @throws Error(Input) naming the place in the scene (as in `objects[2].radius`) and the expected
+///         value, for: a file that cannot be read; a JSON syntax error (with byte, line and
+///         column); a key that is unknown (with the nearest known key), missing or given twice; a
+///         wrong type; a number out of its range; a direction of zero length; an unknown material;
+///         a degenerate camera; a film that is too large
+SceneDescription load_scene(const std::string& path);
 
 } // namespace haarlight::renderer

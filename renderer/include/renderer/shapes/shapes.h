@@ -4,11 +4,10 @@
 // Every finite shape becomes a canonical one (unit sphere, unit disk, cube, …) under one affine
 // map, which holds both its own placement and its transform; spheres that stay spheres and planes
 // are kept in world coordinates. A ray is first held against bounding spheres, four at a time in
-// float; what passes is intersected in double. See <renderer/shapes/ray.h> for how a ray leaves a
+// float; what passes is intersected in double. See <renderer/shapes/shape.h> for how a ray leaves a
 // surface. Cost grows linearly with the number of shapes.
 
 #include <renderer/scene/affine_map.h>
-#include <renderer/shapes/ray.h>
 #include <renderer/shapes/shape.h>
 #include <wavelet/base/lanes.h>
 

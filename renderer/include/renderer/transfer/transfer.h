@@ -68,17 +68,14 @@ public:
 private:
   wavelet::Tree constant(const Rgb& mean) const;
   Rgb background(const FilmPoint& point) const;
-  void add_visibilities(const Hit& hit);
   bool varies(const FilmPoint& point) const;
 
   const LoadedScene& m_scene;
-  const VisibilityTrees& m_visibility;
   Variation m_variation;
   wavelet::ProjectionOptions m_options;
   wavelet::ProjectionTerm m_light;
   wavelet::Projection m_projection;
-  wavelet::RegionTreeBuilder m_regions;
-  std::vector<wavelet::Tree> m_visibilities; ///< of which as many are in use as there are terms
+  OccluderTrees m_occluders;
   std::vector<wavelet::ProjectionTerm> m_terms;
   wavelet::ProjectionReport m_report;
 };

@@ -1,12 +1,11 @@
 #pragma once
-// Rays against the canonical shapes. Directions need not be unit vectors.
+// Finite shapes under affine maps: their placement, and rays against the canonical shapes.
 
 #include <renderer/shapes/shapes.h>
 
 #include <limits>
 
 namespace haarlight::renderer::detail {
-
 inline constexpr double no_hit = std::numeric_limits<double>::infinity();
 
 /// The values of t a line spends inside something.
@@ -48,5 +47,11 @@ struct Bounds {
   Eigen::Vector3d high;
 };
 Bounds canonical_bounds(const Solid& shape);
+
+/// A finite shape under a transform; its object index is left to the caller.
+Solid place_solid(const Shape& shape, const AffineMap& transform);
+
+/// A plane under a transform, likewise.
+WorldPlane place_plane(const Plane& plane, const AffineMap& transform);
 
 } // namespace haarlight::renderer::detail

@@ -1,11 +1,12 @@
 #pragma once
-// Everything within a circle on the sphere, or everything outside of it.
+// Spherical caps: the directions to a ball, or on one side of a plane.
 
 #include <wavelet/product/region.h>
 #include <wavelet/square/square_cap.h>
 
-namespace haarlight::renderer::detail {
+#include <cmath>
 
+namespace haarlight::renderer::detail {
 /// The directions within an angle, in [0, π], of an axis.
 struct Cap {
   Vec3 axis = Vec3::UnitZ(); ///< unit
@@ -34,17 +35,22 @@ struct Cap {
   }
 };
 
-/// 1 within the cap and 0 outside, or the reverse.
-class CapRegion final : public wavelet::Region {
-public:
-  CapRegion(const Cap& cap, bool reverse) : m_cap(cap), m_reverse(reverse) {}
-
-  wavelet::RegionPart classify(const wavelet::SquarePlace& square) const override;
-  float coverage(const wavelet::SquarePlace& square) const override;
-
-private:
-  Cap m_cap;
-  bool m_reverse;
-};
+inline Cap Cap::around_ball(const Eigen::Vector3d& centre, double radius) {
+  const double distance = centre.norm();
+  Cap cap;
+  if (distance <= radius) {
+    cap.cosine = -1;
+    cap.sine = 0;
+    cap.chord_squared = 4;
+    return cap;
+  }
+  const double sine = radius / distance;
+  const double cosine = std::sqrt((1 - sine) * (1 + sine));
+  cap.axis = (centre / distance).cast<float>();
+  cap.cosine = static_cast<float>(cosine);
+  cap.sine = static_cast<float>(sine);
+  cap.chord_squared = static_cast<float>(2 * sine * sine / (1 + cosine));
+  return cap;
+}
 
 } // namespace haarlight::renderer::detail
