@@ -1,6 +1,6 @@
 // Transfer that is all but one object's visibility: the object moves, its shadow with it.
 
-#include "visibility/cap_region.h"
+#include "visibility/cap.h"
 
 #include <renderer/transfer/relight.h>
 
