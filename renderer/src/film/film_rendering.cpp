@@ -12,8 +12,8 @@
 namespace haarlight::renderer {
 namespace {
 
-/// Of eq. 9 in the paper. Directions below the horizon say nothing of occlusion; where there are no
-/// others, none is assumed, and likewise by the ratio estimator where no sample has a weight.
+/// Of the paper's eq. 9: of the directions above the horizon; 1 if there are none, as in the ratio
+/// estimator if no sample has a weight.
 float visible_fraction(const PixelSums& sums) {
   return sums.directions > 0
              ? static_cast<float>(sums.visible) / static_cast<float>(sums.directions)
@@ -35,7 +35,7 @@ Rgb estimate_reflected(const PixelSums& sums, Estimator estimator) {
   return Rgb::Zero();
 }
 
-/// Adds the variance of a technique's sums, n times that of its samples.
+/// Adds the variance of a technique's sums, which is n times that of its samples.
 void add_variance(const TechniqueSums& t, SumVariance& sum) {
   if (t.count < 2)
     return;
@@ -63,7 +63,7 @@ SumVariance variance_of_sums(const PixelSums& sums) {
 
 constexpr int tile_side = 16;
 
-/// What this thread has computed so far; other programs on the machine do not count.
+/// CPU time of this thread.
 double thread_cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -74,13 +74,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What one tile cost.
+/// Cost of a tile.
 struct TileCost {
   ShadingCost shading;
   double seconds = 0;
 };
 
-/// Renders tiles of one pass; one for each thread at a time.
+/// Renders tiles of one pass; one per thread.
 class TileRenderer {
 public:
   TileRenderer(const LoadedScene& scene, const Camera& camera, std::unique_ptr<PixelShader> shader,
@@ -92,7 +92,7 @@ public:
     m_shader->reset();
     const int width = std::min(tile_side, m_film.width - x0);
     for (int y = y0; y < std::min(y0 + tile_side, m_film.height); ++y)
-      for (int i = 0; i < width; ++i) // to and fro: each pixel beside the last
+      for (int i = 0; i < width; ++i) // serpentine order: each pixel is beside the previous one
         pixel((y - y0) % 2 == 0 ? x0 + i : x0 + width - 1 - i, y, pass);
     return {m_shader->take_cost(), thread_cpu_seconds() - start};
   }
@@ -122,7 +122,7 @@ private:
   std::unique_ptr<PixelShader> m_shader;
 };
 
-/// One rendering from first pass to finished film.
+/// A rendering, from the first pass to the finished film.
 class Rendering {
 public:
   Rendering(const LoadedScene& scene, const RenderOptions& options, const MakeShader& make,
@@ -180,7 +180,7 @@ private:
     }
   }
 
-  /// Passes double in size while the time allows; without a limit there is one.
+  /// Passes double in size up to the time limit; without a limit there is one pass.
   Pass next_pass(const Pass& last, double pass_seconds, double elapsed) const {
     const std::uint32_t total = last.first + last.count;
     const double left = m_options.time_limit - elapsed;

@@ -1,6 +1,6 @@
 #pragma once
-// What all ways to render share: one ray through each pixel's centre, tiles, threads, and passes
-// until the time is up. What is done where a ray hits is a PixelShader's business.
+// The framework of all integrators: one ray through each pixel's centre, tiles, threads, and passes
+// up to the time limit. A PixelShader computes the light reflected at a hit.
 
 #include <renderer/film/render.h>
 
@@ -9,8 +9,8 @@
 #include <memory>
 
 namespace haarlight::renderer {
-/// Of the samples that one technique drew, luminances: independent and identically distributed if
-/// points are random.
+/// Sums over one technique's samples (luminance), which are independent and identically distributed
+/// if points are random.
 struct TechniqueSums {
   std::uint32_t count = 0;
   double shadowed = 0;        ///< Σ w v
@@ -25,10 +25,10 @@ struct TechniqueSums {
 struct PixelSums {
   Rgb shadowed = Rgb::Zero();   ///< Σ w v
   Rgb unshadowed = Rgb::Zero(); ///< Σ w
-  Rgb emitted = Rgb::Zero();    ///< by the visible surface; adds to every estimate
+  Rgb emitted = Rgb::Zero();    ///< by the visible surface; added to every estimate
   Rgb product = Rgb::Zero();    ///< L_ns of the product, as of the last pass
   std::array<TechniqueSums, random_techniques> techniques;
-  SumVariance shared; ///< of Σ w v and Σ w, besides that of independent samples
+  SumVariance shared; ///< of Σ w v and Σ w, in excess of that of independent samples
   double pdf = 0;     ///< Σ p
   std::uint32_t count = 0;
   std::uint32_t directions = 0; ///< above the horizon, for the bidirectional estimator
@@ -36,63 +36,63 @@ struct PixelSums {
 
   void add(const Rgb& weight, bool v, float p, Technique technique);
 
-  /// For the bidirectional estimator: a direction above the horizon.
+  /// Adds a direction above the horizon, for the bidirectional estimator.
   void add_direction(bool v);
 
-  /// Adds the variance that a pass's samples share.
+  /// Adds Sampler::shared_variance() of a pass.
   void add_shared(const SumVariance& variance);
 };
 
 /// A pixel's radiance.
 Rgb estimate(const PixelSums& sums, Estimator estimator);
 
-/// Estimated variance of its luminance; 0 with fewer than two samples. A technique of a single
-/// sample has no variance of its own: all samples are then taken as draws of one mixture, which
-/// adds the variance between the techniques' means.
+/// Estimated variance of its luminance; 0 with fewer than two samples. If a technique has a single
+/// sample, all samples are treated as draws from one mixture, which adds the variance between the
+/// techniques' means.
 double estimate_variance(const PixelSums& sums, Estimator estimator);
 
-/// A run of samples for every pixel.
+/// A range of samples of every pixel.
 struct Pass {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
 };
 
-/// What shading costs besides time; grows until taken.
+/// Accumulated cost of shading.
 struct ShadingCost {
   double prepare_seconds = 0;
   std::uint64_t points = 0;
   std::uint64_t leaves = 0;
 };
 
-/// What a pixel sees.
+/// The hit of a pixel's ray.
 struct PixelHit {
   Hit hit; ///< its normal on the viewer's side
   Vec3 wo; ///< unit direction to the viewer, world
   std::uint32_t pixel = 0;
 };
 
-/// Shades pixels, one after another; each thread has its own.
+/// Shades pixels; one per thread.
 class PixelShader {
 public:
   virtual ~PixelShader() = default;
 
-  /// Forgets the pixels before: what comes depends on the pixels to come alone.
+  /// Clears cached state.
   virtual void reset() = 0;
 
   /// Adds a pass's samples of reflected light to the pixel's sums.
   virtual void shade(const PixelHit& seen, const Pass& pass, PixelSums& sums) = 0;
 
-  /// The cost since last asked.
+  /// The cost since the last call.
   ShadingCost take_cost() { return std::exchange(m_cost, {}); }
 
 protected:
   ShadingCost m_cost;
 };
 
-/// Makes a thread's own; called from any thread.
+/// Creates a thread's shader; called from any thread.
 using MakeShader = std::function<std::unique_ptr<PixelShader>()>;
 
-/// Renders the film. Its bytes depend on scene, options and shader alone, unless there is a time
+/// Renders the film. Its bytes depend only on scene, options and shader, unless there is a time
 /// limit.
 RenderResult render_film(const LoadedScene& scene, const RenderOptions& options,
                          const MakeShader& make, int width, int height,

@@ -13,7 +13,7 @@ constexpr std::array<std::pair<const char*, Estimator>, 3> estimator_names = {
      {"bidirectional", Estimator::Bidirectional},
      {"ratio", Estimator::Ratio}}};
 
-/// Light that comes straight from afar.
+/// Direct light.
 class DirectShader : public PixelShader {
 public:
   DirectShader(const LoadedScene& scene, const RenderOptions& options,
@@ -55,7 +55,7 @@ SamplerOptions sampling_of(const RenderOptions& options) {
   result.count = static_cast<std::size_t>(options.spp);
   if (!needs_unshadowed(options.estimator))
     return result;
-  result.product.drift_bound = 0; // each point has to have its own
+  result.product.drift_bound = 0; // each point needs its own product
   if (result.product.variance_bound == 0)
     result.product.variance_bound = integral_variance_bound;
   return result;

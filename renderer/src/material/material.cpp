@@ -14,8 +14,7 @@
 namespace haarlight::renderer {
 namespace {
 
-/// Maps of albedo/π · max(0, n·ω) in the reflection frame, as brdf::BrdfMaps makes for measured
-/// ones.
+/// Maps of albedo/π · max(0, n·ω) in the reflection frame, like brdf::BrdfMaps of measured BRDFs.
 class LambertMaps : public wavelet::MapSource {
 public:
   /// @param albedo per channel, in [0, 1]
@@ -32,7 +31,7 @@ private:
   wavelet::SetInfo m_info;
 };
 
-constexpr int taps = 4; ///< along a pixel's side: the only edge is the horizon
+constexpr int taps = 4; ///< along a pixel's side; the only edge is the horizon
 
 float clamped_cosine(const Vec3& n, int x, int y, int size) {
   const float step = 1.0F / static_cast<float>(size * taps);
@@ -46,7 +45,7 @@ float clamped_cosine(const Vec3& n, int x, int y, int size) {
   return sum / (taps * taps);
 }
 
-/// Without highlight, so that its routine is the cosine's.
+/// A model without highlight, whose sampling routine is the cosine's.
 brdf::BlinnPhong cosine_model(const Rgb& albedo) {
   brdf::BlinnPhong model;
   model.diffuse = albedo;
@@ -117,7 +116,7 @@ private:
   brdf::MeasuredBrdf m_brdf;
 };
 
-/// Pixels along the side of a model's maps: fewer where its lobe is wide.
+/// Pixels along the side of a model's maps; fewer for wide lobes.
 int map_size(const brdf::AnalyticBrdf& model) {
   const double roughness = std::visit(
       [](const auto& m) {
@@ -144,7 +143,7 @@ public:
     }
   }
 
-  /// By way of a table, whose maps overlook no lobe however narrow.
+  /// Tabulated first, so that the maps miss no narrow lobe.
   std::unique_ptr<wavelet::MapSource> maps() const override {
     brdf::BrdfMapOptions options;
     options.size = map_size(m_model);
@@ -187,10 +186,10 @@ public:
   }
 
 private:
-  static Rgb blend(const wavelet::TreeView& a, const wavelet::TreeView& b, float share,
+  static Rgb blend(const wavelet::TreeView& a, const wavelet::TreeView& b, float fraction,
                    const Vec2& p) {
     const Rgb first = a.value(p.x(), p.y());
-    return (first + (b.value(p.x(), p.y()) - first) * share).max(0.0F);
+    return (first + (b.value(p.x(), p.y()) - first) * fraction).max(0.0F);
   }
 
   std::shared_ptr<const TreeTable> m_lobes;

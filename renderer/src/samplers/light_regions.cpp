@@ -22,7 +22,7 @@
 namespace haarlight::renderer {
 namespace {
 
-/// A rectangle of the probe's latitude and longitude, and the pixels in it.
+/// A rectangle of latitude and longitude, and its pixels.
 struct LatLongRegion {
   std::size_t begin = 0; ///< in the order of pixels
   std::size_t end = 0;
@@ -31,7 +31,7 @@ struct LatLongRegion {
   double energy = 0;
   int generation = 0;
 
-  /// The longer side: 0 for longitude, whose circles are the shorter the nearer they are to a pole.
+  /// The longer side: 0 for longitude, scaled by the cosine of the latitude, 1 for latitude.
   int longer_side() const {
     float sine = 0;
     float cosine = 0;
@@ -59,7 +59,7 @@ public:
   std::vector<RepresentativeLight> lights() {
     for (; !m_regions.empty(); m_regions.pop())
       m_finished.push_back(m_regions.top());
-    // The last region takes what is dark altogether and makes no lamp.
+    // The last region takes black pixels and yields no light.
     std::vector<std::uint32_t> labels(m_pixels.count(),
                                       static_cast<std::uint32_t>(m_finished.size()));
     for (std::size_t k = 0; k < m_finished.size(); ++k)
@@ -69,7 +69,7 @@ public:
   }
 
 private:
-  /// All regions are split as often as there are powers of two in the count, then the strongest.
+  /// All regions are split ⌊log₂ count⌋ times, then those of the greatest energy.
   struct Later {
     int generations;
     bool operator()(const LatLongRegion& a, const LatLongRegion& b) const {
@@ -125,7 +125,7 @@ private:
     });
   }
 
-  /// Where the sorted pixels' energy is halved most evenly, neither part being empty.
+  /// The position that halves the sorted pixels' energy best; neither part is empty.
   std::size_t median(const LatLongRegion& region) const {
     std::size_t place = region.begin;
     double sum = 0;
@@ -147,10 +147,10 @@ private:
 constexpr int rounds_between_splits = 4;
 constexpr int rounds_at_last = 16;
 
-/// Pixels side by side, which share the sites that any of them may belong to.
+/// A block of pixels, which share a list of candidate sites.
 struct Block {
   Vec3 centre;
-  float reach = 0; ///< the greatest chord from the centre to a pixel
+  float reach = 0; ///< the longest chord from the centre to a pixel
 };
 
 class Relaxation {
@@ -206,7 +206,7 @@ private:
     }
   }
 
-  /// Gives every pixel to the nearest site.
+  /// Assigns every pixel to the nearest site.
   void assign() {
     parallel_ranges(m_blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
       std::vector<float> distances(m_sites.size());
@@ -218,8 +218,8 @@ private:
     });
   }
 
-  /// The sites that pixels of a block may belong to: the block's nearest, and none that is further
-  /// than the way there from the furthest pixel and back.
+  /// Candidate sites of a block's pixels, by the triangle inequality: all within the distance of
+  /// the block's nearest site plus twice the block's radius.
   void find_near(const Block& block, std::vector<float>& distances,
                  std::vector<std::uint32_t>& near) const {
     float least = std::numeric_limits<float>::max();
@@ -251,7 +251,7 @@ private:
     return (m_pixels.directions[pixel] - m_sites[site]).squaredNorm();
   }
 
-  /// Moves sites to the centroids of their cells, and drops those whose cells are dark.
+  /// Moves sites to the centroids of their cells, and removes sites with black cells.
   void move() {
     std::vector<Centroid> centroids(m_sites.size());
     for (std::size_t i = 0; i < m_pixels.count(); ++i)
@@ -262,15 +262,15 @@ private:
         m_sites.push_back(c.direction());
   }
 
-  /// A cell's energy, and the pixel that adds most to its moment of inertia.
+  /// A cell's energy, and the pixel with the greatest contribution to its moment of inertia.
   struct Spread {
     double energy = 0;
     float inertia = 0;
     std::size_t pixel = 0;
   };
 
-  /// Adds sites to the strongest cells, half as many as there are or what is left. Returns whether
-  /// it found some that can be split.
+  /// Adds sites to the cells of greatest energy: half as many as there are, up to `count` in total.
+  /// @return whether any cell could be split
   bool split(std::size_t count) {
     assign();
     std::vector<Spread> spreads(m_sites.size());
@@ -288,7 +288,7 @@ private:
   void measure(std::size_t pixel, Spread& spread) const {
     const float weight = m_pixels.luminance[pixel];
     spread.energy += static_cast<double>(weight);
-    // Rounding keeps a lone pixel's centroid from lying quite on it.
+    // The centroid of a single pixel differs from it by rounding.
     const float distance = squared_distance(pixel, m_cells[pixel]);
     const float inertia = distance > 1e-10F ? weight * distance : 0;
     if (inertia > spread.inertia) {

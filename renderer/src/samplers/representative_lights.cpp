@@ -7,19 +7,19 @@
 namespace haarlight::renderer {
 namespace {
 
-/// As fine as a probe of a thousand pixels across, and soon gone through.
+/// About the resolution of a probe of 1000 pixels.
 constexpr int map_size = 512;
-/// Of coarser probes: regions within one of their pixels can be this small.
+/// For coarser probes, so that regions can be smaller than one of their pixels.
 constexpr int least_map_size = 128;
 
-/// Lamps as samples; where there are fewer lamps than samples the rest count nothing.
+/// Lights as samples; if there are fewer lights than samples, the remaining samples have pdf 0.
 struct LightSet {
-  LightSet(std::span<const RepresentativeLight> lamps, std::size_t count)
+  LightSet(std::span<const RepresentativeLight> lights, std::size_t count)
       : samples(count, {Vec3::UnitZ(), 0, Technique::Fixed}), radiance(count, Rgb::Zero()) {
-    for (std::size_t i = 0; i < lamps.size(); ++i) {
-      samples[i] = {lamps[i].direction, 1 / (static_cast<float>(count) * lamps[i].solid_angle),
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      samples[i] = {lights[i].direction, 1 / (static_cast<float>(count) * lights[i].solid_angle),
                     Technique::Fixed};
-      radiance[i] = lamps[i].radiance;
+      radiance[i] = lights[i].radiance;
     }
   }
 
@@ -27,7 +27,7 @@ struct LightSet {
   std::vector<Rgb> radiance;
 };
 
-/// All counts' lamps, each made once.
+/// The sets of lights by count; shared by threads.
 class LightSetCache {
 public:
   LightSetCache(const Light& light, MakeRepresentativeLights make)
@@ -61,7 +61,7 @@ public:
     std::ranges::copy(m_lights->samples, out.begin());
   }
 
-  /// That of the nearest lamp, whose region the direction most likely lies in.
+  /// That of the nearest light, whose region most likely contains the direction.
   float pdf(const Vec3& direction, std::size_t count) const override {
     float most = -2;
     float result = 0;
@@ -99,7 +99,7 @@ public:
 
 private:
   std::shared_ptr<const LightSetCache>
-      m_book; ///< samplers keep it too, and may outlive the factory
+      m_book; ///< shared with samplers, which may outlive the factory
 };
 
 } // namespace
@@ -142,20 +142,20 @@ Vec3 Centroid::direction() const {
 std::vector<RepresentativeLight> lights_of_regions(const LightPixels& pixels,
                                                    std::span<const std::uint32_t> regions,
                                                    std::size_t count) {
-  struct Region {
+  struct Sums {
     Centroid centroid;
     Eigen::Array3d radiance = Eigen::Array3d::Zero();
     std::size_t pixels = 0;
   };
-  std::vector<Region> sums(count);
+  std::vector<Sums> sums(count);
   for (std::size_t i = 0; i < pixels.count(); ++i) {
-    Region& region = sums[regions[i]];
+    Sums& region = sums[regions[i]];
     region.centroid.add(pixels.directions[i], pixels.luminance[i]);
     region.radiance += pixels.radiance[i].cast<double>();
     ++region.pixels;
   }
   std::vector<RepresentativeLight> result;
-  for (const Region& region : sums)
+  for (const Sums& region : sums)
     if (region.centroid.weight() > 0) {
       const auto area = static_cast<double>(region.pixels);
       result.push_back({region.centroid.direction(), (region.radiance / area).cast<float>(),

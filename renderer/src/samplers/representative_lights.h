@@ -1,6 +1,5 @@
 #pragma once
-// Lamps in place of a light: what all samplers share that stand one direction for each region of
-// the sphere.
+// Samplers that replace the light by representative lights, one direction per region of the sphere.
 
 #include <renderer/light/light.h>
 #include <renderer/samplers/sampler.h>
@@ -11,7 +10,7 @@
 
 namespace haarlight::renderer {
 
-/// The light as pixels of equal solid angle, those of a map of the square.
+/// The pixels of a map of the light, all of equal solid angle.
 struct LightPixels {
   explicit LightPixels(const Light& light);
 
@@ -24,19 +23,19 @@ struct LightPixels {
   std::vector<float> luminance;
 };
 
-/// A direction that stands for a region.
+/// A direction that represents a region of the light.
 struct RepresentativeLight {
   Vec3 direction;
   Rgb radiance;          ///< mean over the region
   float solid_angle = 0; ///< of the region
 };
 
-/// A sum over directions in which the brighter count more, and what becomes of it.
+/// The weighted mean of directions.
 class Centroid {
 public:
   void add(const Vec3& direction, float weight);
 
-  /// The mean direction; that of the greatest weight if the others cancel it out.
+  /// The mean direction; the direction of the greatest weight if the directions cancel.
   Vec3 direction() const;
 
   double weight() const { return m_weight; }
@@ -50,19 +49,19 @@ private:
   Vec3 m_brightest = Vec3::UnitZ();
 };
 
-/// One lamp for each region that shines, at its centroid by luminance.
-/// @param regions of each pixel, below `count`
+/// One light per region that is not black, at its centroid weighted by luminance.
+/// @param regions index of each pixel's region, < count
 std::vector<RepresentativeLight> lights_of_regions(const LightPixels& pixels,
                                                    std::span<const std::uint32_t> regions,
                                                    std::size_t count);
 
-/// Makes at most `count` lamps; the fewer the light has pixels or shines at all.
+/// Computes at most `count` lights; fewer if there are fewer pixels that are not black.
 using MakeRepresentativeLights =
     std::function<std::vector<RepresentativeLight>(const LightPixels& pixels, std::size_t count)>;
 
-/// Samplers that return the same lamps for every point, as many as are asked for: 1/N Σ f L / pdf
-/// is Σ f L_k Ω_k over the lamps. Lamps for options.count are made now, others when first asked
-/// for.
+/// Samplers that return the same N lights at every point, N being the number of samples:
+/// 1/N Σ f L / pdf is Σ f L_k Ω_k. Lights for options.count are computed immediately, others on
+/// first use.
 std::unique_ptr<SamplerFactory> representative_light_factory(const Light& light,
                                                              MakeRepresentativeLights make,
                                                              const SamplerOptions& options);

@@ -1,5 +1,5 @@
 #pragma once
-// The samplers behind make_sampler_factory(), one source file each.
+// The factories behind make_sampler_factory().
 
 #include <renderer/samplers/sampler.h>
 #include <renderer/scene/loaded_scene.h>
@@ -8,7 +8,7 @@
 
 namespace haarlight::renderer {
 
-/// A factory of samplers that share nothing but the scene.
+/// A factory of samplers that share only the scene.
 class SimpleFactory : public SamplerFactory {
 public:
   using Make = std::function<std::unique_ptr<Sampler>()>;
@@ -20,7 +20,8 @@ private:
   Make m_make;
 };
 
-/// Makes samplers of class S, each constructed from copies of the arguments; wrap references.
+/// Creates samplers of class S, each constructed from copies of the arguments; use std::cref for
+/// references.
 template <class S, class... Arguments>
 std::unique_ptr<SamplerFactory> simple_factory(Arguments... arguments) {
   return std::make_unique<SimpleFactory>([=] { return std::make_unique<S>(arguments...); });

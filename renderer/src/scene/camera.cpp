@@ -5,7 +5,7 @@
 namespace haarlight::renderer {
 namespace {
 
-/// Half the picture's height at distance 1 from the eye, or on the film plane if parallel.
+/// Half the picture's height at distance 1 from the eye, or on the film plane if orthographic.
 double half_height(const CameraDescription& description) {
   if (description.projection == CameraProjection::Orthographic)
     return 0.5 * description.height;

@@ -75,7 +75,7 @@ brdf::AnalyticBrdf read(const SceneNode& node) {
   return model;
 }
 
-/// What a model is called, the keys it has besides its colours, and how it is read.
+/// An analytic model: its key, the keys of its parameters besides colours, and its reader.
 struct ModelReader {
   std::string_view name;
   Names keys;
@@ -163,7 +163,7 @@ Shape read_torus(const SceneNode& node) {
   return torus;
 }
 
-/// What a shape type is called, the keys it has of its own, and how it is read.
+/// A shape type: its name, its own keys, and its reader.
 struct ShapeReader {
   std::string_view type;
   Names keys;
@@ -261,21 +261,21 @@ ObjectDescription read_object(const SceneNode& node) {
 
 constexpr std::size_t scene_bytes_max = std::size_t{1} << 26;
 
-/// File names of a scene count from its folder.
+/// File names of a scene are relative to its folder.
 class Folder {
 public:
   explicit Folder(const std::string& scene_path)
       : m_prefix(names_descriptor(scene_path) ? "./"
                                               : scene_path.substr(0, scene_path.rfind('/') + 1)) {}
 
-  /// The file a key names; empty if the key is not there.
+  /// The file name of a key; empty if the key is absent.
   std::string file(const SceneNode& node, std::string_view key) const {
     const auto name = node.find(key);
     if (!name)
       return {};
     const std::string text = name->text();
     const std::string path = text.front() == '/' ? text : m_prefix + text;
-    return path == "-" ? "./-" : path; // a scene names files only
+    return path == "-" ? "./-" : path; // a scene cannot name standard input
   }
 
 private:
@@ -426,7 +426,7 @@ using namespace detail;
 SceneDescription load_scene(const std::string& path) {
   const InputFile file(path);
   if (file.size() > scene_bytes_max)
-    throw_input_error(path, "is larger than 64 MiB, which no scene is");
+    throw_input_error(path, "is larger than 64 MiB, the limit for scene files");
   const JsonValue value = parse_json(file.bytes(), path);
   const SceneNode root(value, "", path);
   root.allow({"film", "camera", "light", "materials", "objects"});

@@ -20,8 +20,8 @@ struct DepressedQuartic {
   double curvature(double t) const { return 12 * t * t + 2 * p; }
 };
 
-/// The root of a function that is monotone on [low, high] and changes sign there: Newton's steps,
-/// halving the bracket instead where they leave it.
+/// The root of a function that is monotone on [low, high] and changes sign there: Newton's method,
+/// with bisection where a step leaves the bracket.
 template <class Value, class Slope>
 double bracketed_root(double low, double high, double tolerance, Value value, Slope slope) {
   const bool rises = value(high) > 0;
@@ -42,13 +42,13 @@ double bracketed_root(double low, double high, double tolerance, Value value, Sl
 
 bool changes_sign(double a, double b) { return (a > 0) != (b > 0); }
 
-/// Walks along the pieces on which the quartic is monotone, looking for a change of sign.
+/// Searches the monotone intervals of the quartic for a sign change.
 class RootSearch {
 public:
   RootSearch(const DepressedQuartic& quartic, double begin)
       : m_quartic(quartic), m_from(begin), m_value(quartic.value(begin)) {}
 
-  /// Looks from where the search stands to `to`; true if root() was found there.
+  /// Searches up to `to`. @return whether root() was found
   bool reaches(double to) {
     const double value = m_quartic.value(to);
     if (!changes_sign(m_value, value)) {
@@ -62,7 +62,7 @@ public:
     return true;
   }
 
-  /// The same, stopping at an extremum between `low` and `high`, if the slope's sign tells of one.
+  /// Searches up to an extremum between `low` and `high`, if there is one.
   bool passes_extremum(double low, double high) {
     if (!(low < high) || !changes_sign(m_quartic.slope(low), m_quartic.slope(high)))
       return false;
@@ -95,7 +95,7 @@ using Eigen::Vector3d;
 
 constexpr Interval nowhere{no_hit, -no_hit};
 
-/// A line counts as parallel to the axis when it drifts less than 1e-15 of its way from it.
+/// Whether a line deviates from the z axis by less than 1e-15 of its length.
 bool parallel_to_z(double across_squared, const Vector3d& direction) {
   return across_squared < 1e-30 * direction.squaredNorm();
 }
@@ -136,7 +136,7 @@ double disk_distance(const Vector3d& o, const Vector3d& d) {
   return t > 0 && x * x + y * y <= 1 ? t : no_hit; // NaN and infinity, from d.z = 0, are no hits
 }
 
-/// Both roots of a t² + 2 b t + c, by the form that does not cancel; missing ones are no_hit.
+/// Both roots of a t² + 2 b t + c, computed without cancellation; missing ones are no_hit.
 void quadratic_roots(double a, double b, double c, double roots[2]) {
   const double discriminant = b * b - a * c;
   roots[0] = roots[1] = no_hit;
@@ -150,8 +150,8 @@ void quadratic_roots(double a, double b, double c, double roots[2]) {
 }
 
 double cone_distance(const Vector3d& o, const Vector3d& d) {
-  // From the point of the line next to the shape: nothing cancels however far the ray starts.
-  const double start = o.dot(d) / d.squaredNorm(); // the ray's own start, counted from there
+  // Relative to the line's point nearest to the centre, to avoid cancellation for distant origins.
+  const double start = o.dot(d) / d.squaredNorm(); // of the ray's origin, relative to that point
   const Vector3d p = o - start * d;
   const double w = 1 - p.z();
   double candidates[3];
@@ -180,7 +180,7 @@ SurfacePoint box_surface(const Vector3d& p) {
   return result;
 }
 
-/// Unit vector across the axis towards p.
+/// Unit vector from the axis to p, perpendicular to the axis.
 Vector3d away_from_axis(const Vector3d& p) {
   const double distance = std::sqrt(p.x() * p.x() + p.y() * p.y());
   return distance > 0 ? Vector3d(p.x() / distance, p.y() / distance, 0) : Vector3d(1, 0, 0);
@@ -211,8 +211,8 @@ SurfacePoint torus_surface(double tube, const Vector3d& p) {
 
 using Eigen::Vector3d;
 
-/// Maps the z axis to `axis` (its length kept), x and y to vectors of length `across` at right
-/// angles to it, 0 to `origin`.
+/// Maps the z axis to `axis`, including its length, x and y to perpendicular vectors of length
+/// `across`, and 0 to `origin`.
 AffineMap placement(const Vec3& origin, const Vector3d& axis, double across) {
   const Vector3d n = axis.stableNormalized();
   const Vector3d other = std::abs(n.x()) < 0.7 ? Vector3d::UnitX() : Vector3d::UnitY();
@@ -263,7 +263,7 @@ SolidKind kind_of(const Cylinder&) { return SolidKind::Cylinder; }
 SolidKind kind_of(const Cone&) { return SolidKind::Cone; }
 SolidKind kind_of(const Torus&) { return SolidKind::Torus; }
 
-/// The factor of a map that turns, mirrors and scales alike in all directions; 0 of any other map.
+/// The scale factor of a similarity; 0 for any other map.
 double similarity_factor(const Eigen::Matrix3d& linear) {
   const Eigen::Matrix3d gram = linear.transpose() * linear;
   const double squared = gram.trace() / 3;
@@ -296,7 +296,7 @@ double torus_distance(double tube, const Eigen::Vector3d& origin,
   const double start = origin.dot(d);
   const Eigen::Vector3d o = origin - start * d;
   const double away = o.squaredNorm();
-  // A little wider than the torus, so that no search starts on its very surface.
+  // Slightly larger than the torus, so that no search starts on its surface.
   const double reach = wider * (1 + tube) * (1 + tube) - away;
   if (reach <= 0)
     return no_hit;

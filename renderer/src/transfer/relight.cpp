@@ -13,7 +13,7 @@
 namespace haarlight::renderer {
 namespace {
 
-/// Pixels along the side of the map that turned ones are sampled from.
+/// Maximum pixels along the side of the map from which rotated maps are sampled.
 constexpr int side_max = 1024;
 
 constexpr std::size_t pixels_at_once = 512;
@@ -97,13 +97,13 @@ private:
            wavelet::sphere_area;
   }
 
-  /// Nothing for pixels that the variation leaves as they are.
+  /// Null for pixels that do not vary.
   const Material* material_of(int object) const {
     const int material = m_scene.objects[static_cast<std::size_t>(object)].material;
     return m_materials[static_cast<std::size_t>(material)];
   }
 
-  /// Parallel rays stay so: they turn to the eye's new place as seen from what it looks at.
+  /// For orthographic cameras the view direction is from the camera's target to the moved eye.
   Vec3 to_viewer(const FilmPoint& point, const Change& change) const {
     if (m_variation.varying != Varying::View || change.move.isZero())
       return point.wo;
@@ -120,7 +120,7 @@ private:
   std::vector<FilmPoint> m_points;
   wavelet::AdaptiveOptions m_options;
   std::deque<Material> m_loaded;
-  std::vector<const Material*> m_materials; ///< by index; null for those that stay
+  std::vector<const Material*> m_materials; ///< by index; null for those that do not vary
 };
 
 } // namespace

@@ -1,4 +1,5 @@
-// Transfer that is all but one object's visibility: the object moves, its shadow with it.
+// Relighting of moving objects: the transfer is the product of all factors except one object's
+// visibility.
 
 #include "visibility/cap.h"
 
@@ -18,8 +19,8 @@
 namespace haarlight::renderer {
 namespace {
 
-/// Integrates trees over caps: a square wholly inside counts with its average, one wholly outside
-/// not at all, so that only what the cap's edge crosses is looked into. Shared by threads.
+/// Integrates trees over caps: squares inside count with their averages, and only squares that the
+/// cap's edge crosses are descended into. Shared by threads.
 class SphereOcclusion {
 public:
   SphereOcclusion();
@@ -43,29 +44,29 @@ private:
   std::vector<wavelet::SquareCap> m_bounds; ///< as in a complete tree
 };
 
-/// Bounds of squares are kept down to this level.
-constexpr int kept_levels = 8;
+/// Bounds of squares are stored down to this level.
+constexpr int stored_levels = 8;
 
-/// A cap's edge counts as straight within squares no coarser than this level, no wider than this
-/// share of the cap, …
+/// A cap's edge is treated as straight within squares of at least this level, no wider than this
+/// fraction of the cap, …
 constexpr int straight_level = 5;
-constexpr float straight_share = 0.25F;
+constexpr float straight_fraction = 0.25F;
 
 /// … of any size from this level on, …
-constexpr int finest_level = kept_levels;
+constexpr int finest_cap_level = stored_levels;
 
-/// … and where a square holds less than this share of the whole.
-constexpr float negligible_share = 1e-3F;
+/// … and in squares that contain less than this fraction of the integral.
+constexpr float negligible_fraction = 1e-3F;
 
-/// Half a square's mean width, of the radius of the circle around it.
+/// Half a square's mean width over the radius of its bounding circle.
 constexpr float half_width = 0.8F;
 
 bool edge_is_straight(const wavelet::SquareCap& bounds, int level, const Cap& cap) {
-  return level >= straight_level && bounds.sine <= straight_share * cap.sine;
+  return level >= straight_level && bounds.sine <= straight_fraction * cap.sine;
 }
 
-/// The share of a square on the cap's side of its edge, by the distance of its centre from it.
-float share_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
+/// The fraction of a square inside the cap, from the distance of its centre to the cap's edge.
+float fraction_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
   const float along = cap.axis.dot(bounds.centre);
   const float across = std::sqrt(std::max(1 - along * along, 0.0F));
   const float inside = cap.sine * along - cap.cosine * across;
@@ -79,14 +80,14 @@ SphereOcclusion::SphereOcclusion() {
   std::vector<SquarePlace> places = {SquarePlace{}};
   for (std::size_t i = 0; i < places.size(); ++i) {
     m_bounds.push_back(wavelet::square_cap(places[i]));
-    if (places[i].level < kept_levels)
+    if (places[i].level < stored_levels)
       for (unsigned q = 0; q < 4; ++q)
         places.push_back(places[i].quadrant(q));
   }
 }
 
 Rgb SphereOcclusion::within(const wavelet::TreeView& tree, const Cap& cap) const {
-  const Walk walk = {tree, cap, negligible_share * luminance(tree.mean)};
+  const Walk walk = {tree, cap, negligible_fraction * luminance(tree.mean)};
   return wavelet::to_rgb(within(walk, tree.root(), wavelet::to_lanes(tree.mean), {0, 0}));
 }
 
@@ -100,9 +101,9 @@ Float4 SphereOcclusion::within(const Walk& walk, std::uint32_t node, Float4 mean
   if (part == RegionPart::Inside)
     return mean;
   const bool whole = node == wavelet::no_node;
-  if (square.level == finest_level || weight * power_of_two(-2 * square.level) <= walk.negligible ||
+  if (square.level == finest_cap_level || weight * power_of_two(-2 * square.level) <= walk.negligible ||
       (whole && edge_is_straight(bounds, square.level, walk.cap)))
-    return mean * share_inside(bounds, walk.cap);
+    return mean * fraction_inside(bounds, walk.cap);
   std::array<Float4, 4> means = {mean, mean, mean, mean};
   std::array<std::uint32_t, 4> children = {node, node, node, node};
   if (!whole) {
@@ -115,7 +116,7 @@ Float4 SphereOcclusion::within(const Walk& walk, std::uint32_t node, Float4 mean
   return 0.25F * sum;
 }
 
-/// The moved object by itself.
+/// The moved object alone.
 class MovedObject {
 public:
   MovedObject(const ObjectDescription& object, const Vec3& move, const Light& light)
@@ -124,24 +125,24 @@ public:
     m_visibility.emplace(m_shapes, light);
   }
 
-  /// The nearest hit on it, if nothing else is nearer.
+  /// The nearest hit of a ray.
   bool intersect(const Ray& ray, Hit& hit) const { return m_shapes.intersect(ray, hit); }
 
-  /// ∫∫ of a tree over the directions that the object hides from a point.
+  /// ∫∫ of a tree over the directions that the object occludes at a point.
   Rgb hidden(const Hit& from, const wavelet::TreeView& tree,
-             const detail::SphereOcclusion& share) const {
+             const detail::SphereOcclusion& occlusion) const {
     if (m_shapes.solids().empty())
       return hidden_by_tree(from, tree);
     const detail::Solid& solid = m_shapes.solids().front();
     const Eigen::Vector3d origin = leave(from, from.normal).origin.cast<double>();
     const Eigen::Vector3d centre = solid.center - origin;
-    if (centre.dot(from.normal.cast<double>()) < -solid.radius) // below the horizon, as nothing is
+    if (centre.dot(from.normal.cast<double>()) < -solid.radius) // below the horizon
       return Rgb::Zero();
     if (solid.kind != detail::SolidKind::WorldSphere)
       return hidden_by_tree(from, tree);
     detail::Cap cap = detail::Cap::around_ball(centre, solid.radius);
     cap.axis = m_light.to_light(cap.axis);
-    return share.within(tree, cap);
+    return occlusion.within(tree, cap);
   }
 
 private:
@@ -157,14 +158,13 @@ private:
   std::optional<VisibilityTrees> m_visibility;
 };
 
-/// Shades the moved object itself: the product of light and reflectance, of whose squares those
-/// count whose centres nothing else hides. Each product follows the last, of a point that should
-/// be close by.
+/// Shades the moved object: the integral of the product of light and reflectance over the leaves
+/// whose centres are not occluded by other objects. Products of neighbouring points are updated.
 class ObjectShader {
 public:
   ObjectShader(const LoadedScene& scene, int object)
       : m_scene(scene), m_object(object), m_product(scene.light().tree()) {
-    m_options.drift_bound = 0; // integrals have to be each point's own
+    m_options.drift_bound = 0; // each point needs its own integral
     for (int i = 0; i < static_cast<int>(scene.description().objects.size()); ++i) {
       const ObjectDescription& other = scene.description().objects[static_cast<std::size_t>(i)];
       if (i != object)
@@ -177,9 +177,9 @@ public:
     const ShadingPoint point = shading_point(light.to_light(hit.normal), light.to_light(wo));
     const wavelet::RotatedReflectance reflectance =
         m_scene.material_of(m_object).reflectance(point);
-    const wavelet::ProductTree& product = m_follows ? m_product.follow(reflectance, m_options)
-                                                    : m_product.build(reflectance, m_options);
-    m_follows = true;
+    const wavelet::ProductTree& product = m_has_previous ? m_product.follow(reflectance, m_options)
+                                                         : m_product.build(reflectance, m_options);
+    m_has_previous = true;
     Float4 sum = {};
     for (const wavelet::ProductNode& node : product.nodes())
       for (const std::int32_t child : node.child)
@@ -204,7 +204,7 @@ private:
   ShapeSet m_others;
   wavelet::AdaptiveOptions m_options;
   wavelet::AdaptiveProduct m_product;
-  bool m_follows = false;
+  bool m_has_previous = false;
 };
 
 class ObjectRelighter : public Relighter {
@@ -248,14 +248,15 @@ private:
     const wavelet::TreeView& tree = m_transfer.trees()[pixel];
     if (point.hit.object < 0)
       return tree.mean * wavelet::sphere_area;
-    return ((tree.mean - moved.hidden(point.hit, tree, m_share)) * wavelet::sphere_area).max(0.0F);
+    return ((tree.mean - moved.hidden(point.hit, tree, m_occlusion)) * wavelet::sphere_area)
+        .max(0.0F);
   }
 
   const Transfer& m_transfer;
   LoadedScene m_scene;
   int m_object;
   std::vector<FilmPoint> m_points;
-  detail::SphereOcclusion m_share;
+  detail::SphereOcclusion m_occlusion;
 };
 
 } // namespace

@@ -13,12 +13,12 @@
 namespace haarlight::renderer {
 namespace {
 
-/// The scene's shapes but one, and the scene's numbers of them.
-struct Shapes {
+/// The scene's shapes except one, and their object indices in the scene.
+struct ShapesWithout {
   ShapeSet set;
   std::vector<int> numbers;
 
-  Shapes(const SceneDescription& scene, int without) {
+  ShapesWithout(const SceneDescription& scene, int without) {
     for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i)
       if (i != without) {
         const ObjectDescription& object = scene.objects[static_cast<std::size_t>(i)];
@@ -28,7 +28,7 @@ struct Shapes {
   }
 };
 
-FilmPoint find_point(const Shapes& shapes, const Ray& ray) {
+FilmPoint find_point(const ShapesWithout& shapes, const Ray& ray) {
   FilmPoint point;
   point.wo = -ray.direction;
   if (!shapes.set.intersect(ray, point.hit))
@@ -41,20 +41,20 @@ FilmPoint find_point(const Shapes& shapes, const Ray& ray) {
 
 constexpr std::size_t batch_pixels = 4096;
 
-/// A tree, and what making it left.
-struct Made {
+/// A tree and the report on it.
+struct BuiltTree {
   wavelet::Tree tree;
   wavelet::ProjectionReport report;
 };
 
-void account(const Made& made, TransferReport& sums) {
-  if (made.report.squares == 0)
+void account(const BuiltTree& built, TransferReport& sums) {
+  if (built.report.squares == 0)
     return;
   ++sums.pixels;
-  sums.nodes += made.tree.links.size();
-  sums.mean_squares += static_cast<double>(made.report.squares);
-  sums.error += made.report.dropped;
-  sums.unresolved += made.report.unresolved;
+  sums.nodes += built.tree.links.size();
+  sums.mean_squares += static_cast<double>(built.report.squares);
+  sums.error += built.report.dropped;
+  sums.unresolved += built.report.unresolved;
 }
 
 TransferReport averaged(TransferReport sums) {
@@ -65,7 +65,7 @@ TransferReport averaged(TransferReport sums) {
   return sums;
 }
 
-/// In six digits and the C locale.
+/// Six significant digits in the C locale.
 std::string number_text(double number) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
@@ -88,7 +88,7 @@ std::string units_of(Varying varying) {
 
 std::vector<FilmPoint> film_points(const SceneDescription& scene, int width, int height,
                                    int without) {
-  const Shapes shapes(scene, without);
+  const ShapesWithout shapes(scene, without);
   const Camera camera(scene.camera, width, height);
   std::vector<FilmPoint> points(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   parallel_ranges(points.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -197,7 +197,7 @@ TransferReport build_transfer(const LoadedScene& scene, const Variation& variati
   const VisibilityTrees visibility(scene.shapes(), scene.light());
   const std::vector<float> variances = wavelet::variances_within(scene.light().tree());
   TransferReport report;
-  std::vector<Made> batch;
+  std::vector<BuiltTree> batch;
   for (std::size_t first = 0; first < points.size(); first += batch_pixels) {
     batch.clear();
     batch.resize(std::min(batch_pixels, points.size() - first));
@@ -206,9 +206,9 @@ TransferReport build_transfer(const LoadedScene& scene, const Variation& variati
       for (std::size_t i = begin; i < end; ++i)
         batch[i] = {maker.make(points[first + i]), maker.report()};
     });
-    for (Made& made : batch) {
-      account(made, report);
-      sink.add(std::move(made.tree));
+    for (BuiltTree& built : batch) {
+      account(built, report);
+      sink.add(std::move(built.tree));
     }
     if (progress)
       progress(static_cast<int>(first + batch.size()), static_cast<int>(points.size()));

@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace haarlight::renderer::detail {
-/// The directions within an angle, in [0, π], of an axis.
+/// The directions within an angle in [0, π] of an axis.
 struct Cap {
   Vec3 axis = Vec3::UnitZ(); ///< unit
   float cosine = 0;          ///< of the angle
@@ -16,11 +16,11 @@ struct Cap {
 
   static Cap half_space(const Vec3& axis) { return {axis, 0, 1, 2}; }
 
-  /// The directions from `origin` to a ball; all of them from within it.
-  /// @param centre of the ball, seen from the origin
+  /// The directions from the origin to a ball; all directions if the origin is inside.
+  /// @param centre of the ball relative to the origin
   static Cap around_ball(const Eigen::Vector3d& centre, double radius);
 
-  /// Where the squares of a cap's bounds lie.
+  /// Classifies a square by its bounding cap.
   wavelet::RegionPart classify(const wavelet::SquareCap& bounds) const {
     const float along = axis.dot(bounds.centre);
     const float even = cosine * bounds.cosine;

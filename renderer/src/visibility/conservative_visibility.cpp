@@ -15,12 +15,12 @@ using wavelet::SquareCap;
 using wavelet::SquarePlace;
 using wavelet::SquareView;
 
-/// Whether a point sees the face of a box at the low or the high end of an axis.
+/// Whether the face of a box at the low or high end of an axis is visible from a point.
 bool sees_face(const Bounds& box, const Eigen::Vector3d& from, int axis, bool high) {
   return high ? from[axis] > box.high[axis] : from[axis] < box.low[axis];
 }
 
-/// An edge of a box in the direction of an axis, at either end of the two next axes.
+/// An edge of a box along an axis, at the low or high end of the other two axes.
 struct Edge {
   int axis = 0;
   bool high1 = false;
@@ -42,7 +42,7 @@ struct Edge {
   }
 };
 
-/// Of the box around a solid; of no planes from within that.
+/// Of a solid's bounding box; without planes from inside the box.
 /// @param origin of the directions, in the world
 /// @param to_frame rotation from the world to the frame of the directions
 Outline outline_of(const Solid& solid, const Eigen::Vector3d& origin,
@@ -67,14 +67,14 @@ Outline outline_of(const Solid& solid, const Eigen::Vector3d& origin,
   return outline;
 }
 
-/// What may be seen of a square none of whose points are.
-constexpr float least_seen = 1.0F / 64;
+/// Visible fraction of a square none of whose points is visible.
+constexpr float min_visible = 1.0F / 64;
 
-/// Of SquareView::occluders: stands for all obstacles from this number on.
+/// Of SquareView::occluders: represents all obstacles from this index on.
 constexpr std::size_t last_bit = 63;
 
-/// The points of a square that are looked at, one in each of eight columns and rows. None lies on
-/// an edge, where level planes have their horizon on a whole row of squares.
+/// The tested points of a square, one in each of eight columns and rows. None lies on an edge,
+/// where the horizon of a horizontal plane coincides with a whole row of squares.
 constexpr std::size_t batches = 2;
 constexpr unsigned all_points = 0xFF;
 using Points = std::array<Lanes3, batches>;
@@ -97,8 +97,7 @@ unsigned lane_bits(Int4 lanes) {
   return static_cast<unsigned>(four[0] | four[1] | four[2] | four[3]);
 }
 
-/// Bits of those of the points that lie beyond a plane: their product with its normal is above
-/// `least`.
+/// Bits of the points whose dot product with a normal exceeds `least`.
 unsigned points_beyond(const Points& points, const Vec3& normal, float least) {
   unsigned bits = 0;
   for (std::size_t i = 0; i < batches; ++i) {
@@ -110,7 +109,7 @@ unsigned points_beyond(const Points& points, const Vec3& normal, float least) {
   return bits;
 }
 
-/// Bits of those of the points that a solid hides.
+/// Bits of the points that a solid occludes.
 unsigned points_behind(const Points& points, const Obstacle& obstacle) {
   const Eigen::Matrix3f& m = obstacle.to_object;
   unsigned bits = 0;
@@ -119,57 +118,57 @@ unsigned points_behind(const Points& points, const Obstacle& obstacle) {
       return m(axis, 0) * points[i].x + m(axis, 1) * points[i].y + m(axis, 2) * points[i].z;
     };
     const Lanes3 directions = {along(0), along(1), along(2)};
-    bits |= lane_bits(rays_meet(*obstacle.solid, obstacle.origin, directions)) << (4 * i);
+    bits |= lane_bits(rays_hit(*obstacle.solid, obstacle.origin, directions)) << (4 * i);
   }
   return bits;
 }
 
-/// One square, and those of its points above the horizon that nothing hides so far. The points are
-/// worked out only once something may be in their way.
+/// The visible points of a square above the horizon. Points are computed once an occluder may
+/// affect the square.
 class VisibilityQuery {
 public:
   VisibilityQuery(const SquarePlace& square, const Vec3& normal)
       : m_square(square), m_cap(wavelet::square_cap(square)), m_normal(normal) {}
 
-  /// Takes away the points behind an obstacle. @return where the square surely lies of what that
-  /// hides; Partial if it may be across an edge
-  RegionPart look_past(const Obstacle& obstacle) {
+  /// Removes the points that an obstacle occludes.
+  /// @return the square's position relative to the occluded region; Partial if unknown
+  RegionPart remove_behind(const Obstacle& obstacle) {
     const RegionPart part = obstacle.bounds.classify(m_cap);
     if (part == RegionPart::Outside)
       return part;
     if (obstacle.solid != nullptr)
-      return look_past_solid(obstacle);
+      return remove_behind_solid(obstacle);
     if (part == RegionPart::Partial)
-      hide(points_beyond(points(), obstacle.bounds.axis, obstacle.bounds.cosine));
+      remove(points_beyond(points(), obstacle.bounds.axis, obstacle.bounds.cosine));
     return part;
   }
 
-  /// The share of what lies above the horizon.
-  float seen() const {
-    if (!m_points || m_left == m_above)
+  /// Of the part above the horizon.
+  float visible_fraction() const {
+    if (!m_points || m_visible == m_above)
       return 1;
-    return std::max(least_seen, static_cast<float>(std::popcount(m_left)) /
-                                    static_cast<float>(std::popcount(m_above)));
+    return std::max(min_visible, static_cast<float>(std::popcount(m_visible)) /
+                                     static_cast<float>(std::popcount(m_above)));
   }
 
 private:
-  RegionPart look_past_solid(const Obstacle& obstacle) {
+  RegionPart remove_behind_solid(const Obstacle& obstacle) {
     const RegionPart part = obstacle.outline.classify(m_cap);
     if (part == RegionPart::Outside)
       return part;
     if (part == RegionPart::Inside && obstacle.solid->kind == SolidKind::Box)
       return part;
-    hide(points_behind(points(), obstacle));
+    remove(points_behind(points(), obstacle));
     return RegionPart::Partial;
   }
 
-  void hide(unsigned points) { m_left &= ~points; }
+  void remove(unsigned points) { m_visible &= ~points; }
 
   const Points& points() {
     if (!m_points) {
       m_points = points_of(m_square);
       m_above = points_beyond(*m_points, m_normal, 0);
-      m_left = m_above;
+      m_visible = m_above;
     }
     return *m_points;
   }
@@ -179,7 +178,7 @@ private:
   Vec3 m_normal;
   std::optional<Points> m_points;
   unsigned m_above = all_points;
-  unsigned m_left = all_points;
+  unsigned m_visible = all_points;
 };
 
 } // namespace
@@ -228,13 +227,13 @@ void ConservativeVisibility::look(std::span<const SquarePlace> squares,
 
 SquareView ConservativeVisibility::view_of(const SquarePlace& square,
                                            std::uint64_t occluders) const {
-  VisibilityQuery glance(square, m_normal);
+  VisibilityQuery query(square, m_normal);
   std::uint64_t in_part = 0;
   for (std::uint64_t rest = occluders; rest != 0; rest &= rest - 1) {
     const auto bit = static_cast<std::size_t>(std::countr_zero(rest));
     const std::size_t end = bit == last_bit ? m_obstacles.size() : bit + 1;
     for (std::size_t i = bit; i < std::min(end, m_obstacles.size()); ++i)
-      switch (glance.look_past(m_obstacles[i])) {
+      switch (query.remove_behind(m_obstacles[i])) {
       case RegionPart::Inside:
         return {0, 0};
       case RegionPart::Partial:
@@ -244,7 +243,7 @@ SquareView ConservativeVisibility::view_of(const SquarePlace& square,
         break;
       }
   }
-  return {glance.seen(), in_part};
+  return {query.visible_fraction(), in_part};
 }
 
 } // namespace haarlight::renderer::detail

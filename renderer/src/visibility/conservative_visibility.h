@@ -1,6 +1,5 @@
 #pragma once
-// How much of a square the objects of a scene leave visible from a point, by estimate: quick enough
-// to be asked of every square that a sampler has to do with.
+// Fast conservative estimates of the visible fraction of squares from a point, for samplers.
 
 #include "visibility/cap.h"
 
@@ -15,10 +14,11 @@
 #include <vector>
 
 namespace haarlight::renderer::detail {
-/// Six planes at most, some of them twice; all directions to the box are on the positive side of
-/// each.
+/// The directions from a point to a box, bounded by the planes through the point and the box's
+/// silhouette edges: at most six planes, some stored twice; all directions to the box are on the
+/// positive side of each.
 struct Outline {
-  std::array<Float4, 2> x = {}; ///< unit normals; all zero from within
+  std::array<Float4, 2> x = {}; ///< unit normals; all zero from inside the box
   std::array<Float4, 2> y = {};
   std::array<Float4, 2> z = {};
 
@@ -29,7 +29,7 @@ struct Outline {
     z[batch][plane % 4] = normal.z();
   }
 
-  /// Where the squares of a cap's bounds lie; Inside if all of them is behind the box.
+  /// Classifies a square by its bounding cap; Inside if the box occludes all of it.
   wavelet::RegionPart classify(const wavelet::SquareCap& bounds) const {
     Int4 beside = {};
     Int4 within = ~beside;
@@ -46,24 +46,24 @@ struct Outline {
   }
 };
 
-/// What may be in the way, as seen from some point; directions are the light's.
+/// A possible occluder, as seen from a point; directions in the light's frame.
 struct Obstacle {
-  Cap bounds;                   ///< all that it hides lies within
-  Outline outline;              ///< of the box around the solid
-  const Solid* solid = nullptr; ///< that rays tell the outline of; else all in the bounds is hidden
-  Vec3 origin;                  ///< the point in the solid's frame
-  Eigen::Matrix3f to_object;    ///< of directions
+  Cap bounds;      ///< contains all occluded directions
+  Outline outline; ///< of the solid's bounding box
+  const Solid* solid =
+      nullptr; ///< tested by rays; null: all directions within the bounds are occluded
+  Vec3 origin; ///< the point in the solid's frame
+  Eigen::Matrix3f to_object; ///< of directions
 };
 
-/// Turned to one point after another. Squares that lie all within a sphere's outline or behind a
-/// plane or one convex shape, or beside all objects, are known; others are looked at in eight
-/// points, for all objects together.
+/// Squares within the outline of a sphere or a box, behind a plane, or outside all outlines are
+/// classified exactly; of other squares eight points are tested against all objects.
 class ConservativeVisibility final : public wavelet::SquareVisibility {
 public:
   /// @param shapes, light must outlive this
   ConservativeVisibility(const ShapeSet& shapes, const Light& light);
 
-  /// @param from its normal points to the side that is seen
+  /// @param from its normal points to the viewer's side
   void set_shading_point(const Hit& from);
 
   void look(std::span<const wavelet::SquarePlace> squares,

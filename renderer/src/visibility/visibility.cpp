@@ -21,7 +21,7 @@ namespace haarlight::renderer {
 
 namespace detail {
 
-/// A shape of the set: one of the two.
+/// An object: either a solid or a plane.
 struct Occluder {
   const Solid* solid = nullptr;
   const WorldPlane* plane = nullptr;
@@ -66,11 +66,11 @@ private:
   bool m_reverse;
 };
 
-/// Points of a square that rays sample it by: a (0, 2)-net of 16 (Sobol'), as are its first 4.
+/// Ray directions of a square: a (0, 2)-net of 16 points (Sobol'), as are its first 4.
 inline constexpr std::size_t net_size = 16;
 Vec2 net_point(const wavelet::SquarePlace& square, std::size_t index);
 
-/// Rays from one point against one shape; directions are the light's.
+/// Rays from one point against one shape; directions in the light's frame.
 class SolidRays {
 public:
   /// @param light must outlive this, and so must the solid
@@ -78,28 +78,28 @@ public:
 
   bool intersects(const Vec3& direction) const;
 
-  /// Whether no ray into the cap meets the shape; may say no where it would be hard to tell.
+  /// Whether no ray within the cap hits the shape; conservative: may return false.
   bool all_miss(const wavelet::SquareCap& cap) const;
-  /// Whether all of them do; likewise.
+  /// Whether all rays within the cap hit the shape; conservative: may return false.
   bool all_meet(const wavelet::SquareCap& cap) const;
 
 private:
-  /// How far the whole shape lies beyond a plane through the origin of the rays, on the side that
-  /// its unit normal points to; negative if not all of it does.
+  /// Least distance of the shape beyond a plane through the rays' origin, on the side of its unit
+  /// normal; negative if the plane does not separate them.
   double clearance(const Vec3& normal) const;
   void find_tube(const Eigen::Vector3d& origin);
   Eigen::Vector3d object_direction(const Vec3& direction) const;
 
   const Light& m_light;
   const Solid& m_solid;
-  Cap m_bounds;                    ///< around the shape's bounding sphere
-  std::vector<Cap> m_tube;         ///< of a torus: around balls that hold all of its tube …
-  std::vector<Cap> m_core;         ///< … and around such as lie within it
+  Cap m_bounds;                    ///< of the shape's bounding sphere
+  std::vector<Cap> m_tube;         ///< of a torus: of balls that cover its tube …
+  std::vector<Cap> m_core;         ///< … and of balls inside its tube
   Eigen::Vector3d m_to_shape;      ///< from the origin to the shape's own origin
-  Eigen::Vector3d m_object_origin; ///< the rays', as the shape sees it
+  Eigen::Vector3d m_object_origin; ///< of the rays, in the shape's frame
 };
 
-/// 1 where rays miss a shape.
+/// 1 in directions whose rays miss a shape.
 class SolidRegion final : public wavelet::Region {
 public:
   SolidRegion(const Solid& solid, const Eigen::Vector3d& origin, const Light& light)
@@ -112,20 +112,20 @@ private:
   SolidRays m_rays;
 };
 
-/// Wide caps have no pyramid around them.
+/// Wider caps have no bounding pyramid.
 constexpr float least_cosine = 0.5F;
 
 constexpr std::array<std::array<float, 2>, 4> corners = {{{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
 
-/// Directions, as seen from the axis of a cap, in which a plane may separate it from a shape: the
-/// first is that of the shape's middle.
+/// Directions about the axis of a cap in which a plane may separate it from a shape; the first is
+/// that of the shape's centre.
 constexpr std::array<std::array<float, 2>, 5> ways = {
     {{1, 0}, {0.7071F, 0.7071F}, {0.7071F, -0.7071F}, {0.3827F, 0.9239F}, {0.3827F, -0.9239F}}};
 
-/// By how much the best of them is turned to either side, in turn.
+/// Successive rotations of the best of them to either side.
 constexpr std::array<float, 5> turns = {0.4F, 0.2F, 0.1F, 0.05F, 0.025F};
 
-/// What a map stretches vectors by at most; exact if it stretches all alike.
+/// Upper bound on the factor by which a map scales vectors; exact for similarities.
 double stretch_bound(const Eigen::Matrix3d& linear) {
   return std::sqrt((linear.transpose() * linear).cwiseAbs().rowwise().sum().maxCoeff());
 }
@@ -151,11 +151,12 @@ SolidRays::SolidRays(const Solid& solid, const Eigen::Vector3d& origin, const Li
     find_tube(origin);
 }
 
-/// So that what is seen through the ring is told apart from it.
+/// Covers the tube by balls, so that directions through the ring are classified as unoccluded.
 void SolidRays::find_tube(const Eigen::Vector3d& origin) {
   constexpr int balls = 48;
   constexpr double half_step = 180.0 / balls;
-  // A ball reaches from its centre to the tube's surface half a step along the ring.
+  // A ball's radius is the distance from its centre to the tube's surface half a step along the
+  // ring.
   const double along = 2 * (1 + m_solid.tube) * sine_cosine_degrees(half_step / 2).sine;
   const double outer = std::hypot(m_solid.tube, along) * stretch_bound(m_solid.to_world.linear);
   const double inner = m_solid.tube / stretch_bound(m_solid.to_object.linear);
@@ -288,12 +289,12 @@ private:
   std::optional<SolidRays> m_own;
 };
 
-/// Where rays to the side that is seen start.
+/// Origin of rays to the viewer's side.
 Eigen::Vector3d origin_of(const Hit& from) {
   return leave(from, from.normal).origin.cast<double>();
 }
 
-/// What lies on the same side of the plane as the origin.
+/// 1 in directions whose rays miss the plane.
 CapRegion beside_plane(const WorldPlane& plane, const Eigen::Vector3d& origin, const Light& light) {
   const double above = plane.normal.dot(origin) - plane.height;
   const Vec3 normal = light.to_light(plane.normal.cast<float>());

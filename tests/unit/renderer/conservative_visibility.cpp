@@ -68,7 +68,7 @@ double mean_error(detail::ConservativeVisibility& squares, const ShapeSet& set, 
 TEST_CASE("estimates of what is seen of squares are near the rays' share, and 0 only where that is",
           "[seen]") {
   for (const Pair& pair : pairs()) {
-    const ShapeSet set = both(pair);
+    const ShapeSet set = intersection(pair);
     const Hit hit = top_of_sphere();
     detail::ConservativeVisibility squares(set, turned_light());
     squares.set_shading_point(hit);
@@ -81,7 +81,7 @@ TEST_CASE("estimates of what is seen of squares are near the rays' share, and 0 
 TEST_CASE("squares within a square have no occluders that it has not", "[seen]") {
   for (const Pair& pair : pairs()) {
     INFO(pair.name);
-    const ShapeSet set = both(pair);
+    const ShapeSet set = intersection(pair);
     const Hit hit = top_of_sphere();
     detail::ConservativeVisibility squares(set, turned_light());
     squares.set_shading_point(hit);
@@ -123,7 +123,7 @@ TEST_CASE("rays of four lanes meet what rays one by one do", "[seen]") {
         towards.y[lane] = 0.6F * normal(generator) - from.y();
         towards.z[lane] = 0.6F * normal(generator) - from.z();
       }
-      const Int4 result = detail::rays_meet(solid, from, towards);
+      const Int4 result = detail::rays_hit(solid, from, towards);
       for (int lane = 0; lane < 4; ++lane) {
         const Vec3 direction(towards.x[lane], towards.y[lane], towards.z[lane]);
         const bool truth = detail::canonical_distance(solid, from.cast<double>(),

@@ -15,12 +15,12 @@
 namespace haarlight::renderer {
 struct Hit;
 
-/// A surface point as samplers see it; all directions in one frame.
+/// A surface point; all directions in the light's frame.
 struct ShadingPoint {
   Vec3 n;                     ///< unit normal, on the viewer's side
   Vec3 wo;                    ///< unit direction to the viewer, n·wo > 0
   ReflectionFrame reflection; ///< of n and wo
-  const Hit* hit = nullptr;   ///< the point in the world, where anything may be in its light's way
+  const Hit* hit = nullptr;   ///< the point in the world, if there are possible occluders
 };
 
 ShadingPoint shading_point(const Vec3& n, const Vec3& wo);
@@ -33,13 +33,13 @@ public:
   virtual void evaluate(const ShadingPoint& point, std::span<const Vec3> directions,
                         std::span<Rgb> out) const = 0;
 
-  /// The θ_r-only set of maps to make trees from; none if it is trees already.
+  /// The θ_r-only set of maps to build trees from; null if the reflectance is given by trees.
   virtual std::unique_ptr<wavelet::MapSource> maps() const { return nullptr; }
 
-  /// The set with rolls, for those that are cheap enough to make at load; else none.
+  /// The set with rolls, where it is cheap enough to build at load time; else null.
   virtual std::unique_ptr<wavelet::MapSource> roll_maps() const { return nullptr; }
 
-  /// The formula, for those that have a sampling routine of their own; else none.
+  /// The analytic model with its own sampling routine; else null.
   virtual const brdf::AnalyticBrdf* model() const { return nullptr; }
 };
 
@@ -50,14 +50,14 @@ std::unique_ptr<Reflectance> measured_reflectance(brdf::MeasuredBrdf brdf);
 
 std::unique_ptr<Reflectance> analytic_reflectance(const brdf::AnalyticBrdf& model);
 
-/// What a θ_r-only set of trees says, blended between neighbouring cells.
+/// Values of a θ_r-only set of trees, interpolated between neighbouring cells.
 std::unique_ptr<Reflectance> tree_reflectance(std::shared_ptr<const TreeTable> lobes);
 
-/// Where a point's θ_r lies among the centres of a θ_r-only set's cells, in cells.
+/// A point's θ_r in cells of a θ_r-only set; integers are the centres of cells.
 float theta_coordinate(const TreeTable& lobes, const ShadingPoint& point);
 
-/// What is not given as a file is made: trees from the measured table, or from the formula; with
-/// trees alone, they are the truth.
+/// Trees that are not given as files are built from the measured table or from the analytic model.
+/// If only trees are given, they define the reflectance.
 class Material {
 public:
   /// @throws Error(Input) as the files' readers do
@@ -69,32 +69,31 @@ public:
     m_source_reflectance->evaluate(point, directions, out);
   }
 
-  /// The same for one.
+  /// The same for one direction.
   Rgb evaluate(const ShadingPoint& point, const Vec3& direction) const;
 
-  /// The formula, if the material is one with a sampling routine of its own.
+  /// The analytic model with its own sampling routine; null for other materials.
   const brdf::AnalyticBrdf* model() const { return m_source_reflectance->model(); }
 
-  /// Makes what samplers use in place of the truth: the θ_r trees and their pyramid, if not there
-  /// yet.
+  /// Builds the θ_r-only trees and their pyramid, if missing.
   void require_trees();
 
-  /// Makes what sampling the reflectance alone uses: the trees, unless it has a routine of its own.
+  /// Builds the trees unless the reflectance has its own sampling routine.
   void require_lobe();
 
-  /// The θ_r-only set seen from a point: for AdaptiveProduct. After require_trees().
+  /// The θ_r-only set rotated to a point, for AdaptiveProduct. Requires require_trees().
   wavelet::RotatedReflectance reflectance(const ShadingPoint& point) const;
 
-  /// The tree of the θ_r cell nearest to a point's, in its reflection frame. After require_trees().
+  /// The tree of the nearest θ_r cell, in the point's reflection frame. Requires require_trees().
   const wavelet::TreeView& lobe(const ShadingPoint& point) const;
 
-  /// Makes the set with rolls for a formula that has none; measured materials must name theirs.
+  /// Builds the set with rolls of an analytic model; measured materials must name theirs.
   void require_roll_table();
 
   /// The set with rolls, if there is one.
   const TreeTable* roll_table() const { return m_rolls ? &*m_rolls : nullptr; }
 
-  /// Radiance that it sends into all directions by itself.
+  /// Emitted radiance, the same in all directions.
   const Rgb& emission() const { return m_emission; }
 
   const std::string& name() const { return m_name; }

@@ -1,5 +1,5 @@
 #pragma once
-// Affine maps of space, in double: they are set up once and used at every ray.
+// Affine maps in double precision.
 
 #include <wavelet/base/geometry.h>
 
@@ -21,12 +21,12 @@ struct AffineMap {
   Eigen::Vector3d point(const Eigen::Vector3d& p) const { return linear * p + offset; }
   Eigen::Vector3d vector(const Eigen::Vector3d& v) const { return linear * v; }
 
-  /// This map first, `next` after it.
+  /// The composition that applies this map first, then `next`.
   AffineMap then(const AffineMap& next) const {
     return {next.linear * linear, next.linear * offset + next.offset};
   }
 
-  /// The map is finite and neither it nor its inverse exceeds 1e18 anywhere.
+  /// Whether the map and its inverse are finite with coefficients of at most 1e18.
   bool usable() const;
 
   /// The inverse of a usable map.
