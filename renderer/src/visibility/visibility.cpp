@@ -279,7 +279,7 @@ private:
       if (!(m_normal.dot(w) > 0))
         continue;
       ++all;
-      missed += m_own->intersects(w) ? 0 : 1;
+      missed += m_own->intersects(w) ? 0.0F : 1.0F;
     }
     return all > 0 ? missed / all : 1;
   }
