@@ -8,6 +8,8 @@
 #include <wavelet/base/error.h>
 #include <wavelet/file/input_file.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <map>
 
@@ -388,13 +390,15 @@ std::vector<MaterialDescription> read_materials(const SceneNode& node, const Fol
 
 std::vector<std::string> read_object_names(const SceneNode& node) {
   std::vector<std::string> names;
+  std::map<std::string, std::size_t> index;
   for (const SceneNode& element : node.elements()) {
     const auto name = element.find("name");
-    const std::string text = name ? name->text() : "";
-    const auto same = std::find(names.begin(), names.end(), text);
-    if (!text.empty() && same != names.end())
-      name->fail("is the name of objects[" + std::to_string(same - names.begin()) + "] already");
-    names.push_back(text);
+    names.push_back(name ? name->text() : "");
+    if (!name)
+      continue;
+    const auto [first, is_new] = index.emplace(names.back(), names.size() - 1);
+    if (!is_new)
+      name->fail("is already the name of objects[" + std::to_string(first->second) + "]");
   }
   return names;
 }
@@ -421,13 +425,11 @@ std::vector<ObjectDescription> read_objects(const SceneNode& node,
 
 } // namespace
 
-using namespace detail;
-
 SceneDescription load_scene(const std::string& path) {
   const InputFile file(path);
   if (file.size() > scene_bytes_max)
     throw_input_error(path, "is larger than 64 MiB, the limit for scene files");
-  const JsonValue value = parse_json(file.bytes(), path);
+  const Json value = parse_json(file.bytes(), path);
   const SceneNode root(value, "", path);
   root.allow({"film", "camera", "light", "materials", "objects"});
   const Folder folder(path);

@@ -19,6 +19,10 @@
 namespace haarlight::renderer {
 namespace {
 
+using namespace detail;
+using wavelet::RegionPart;
+using wavelet::SquarePlace;
+
 /// Integrates trees over caps: squares inside count with their averages, and only squares that the
 /// cap's edge crosses are descended into. Shared by threads.
 class SphereOcclusion {
@@ -73,9 +77,6 @@ float fraction_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
   return std::clamp(0.5F + 0.5F * inside / (half_width * bounds.sine), 0.0F, 1.0F);
 }
 
-using wavelet::RegionPart;
-using wavelet::SquarePlace;
-
 SphereOcclusion::SphereOcclusion() {
   std::vector<SquarePlace> places = {SquarePlace{}};
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -101,7 +102,8 @@ Float4 SphereOcclusion::within(const Walk& walk, std::uint32_t node, Float4 mean
   if (part == RegionPart::Inside)
     return mean;
   const bool whole = node == wavelet::no_node;
-  if (square.level == finest_cap_level || weight * power_of_two(-2 * square.level) <= walk.negligible ||
+  if (square.level == finest_cap_level ||
+      weight * power_of_two(-2 * square.level) <= walk.negligible ||
       (whole && edge_is_straight(bounds, square.level, walk.cap)))
     return mean * fraction_inside(bounds, walk.cap);
   std::array<Float4, 4> means = {mean, mean, mean, mean};
@@ -130,17 +132,17 @@ public:
 
   /// ∫∫ of a tree over the directions that the object occludes at a point.
   Rgb hidden(const Hit& from, const wavelet::TreeView& tree,
-             const detail::SphereOcclusion& occlusion) const {
+             const SphereOcclusion& occlusion) const {
     if (m_shapes.solids().empty())
       return hidden_by_tree(from, tree);
-    const detail::Solid& solid = m_shapes.solids().front();
+    const Solid& solid = m_shapes.solids().front();
     const Eigen::Vector3d origin = leave(from, from.normal).origin.cast<double>();
     const Eigen::Vector3d centre = solid.center - origin;
     if (centre.dot(from.normal.cast<double>()) < -solid.radius) // below the horizon
       return Rgb::Zero();
-    if (solid.kind != detail::SolidKind::WorldSphere)
+    if (solid.kind != SolidKind::WorldSphere)
       return hidden_by_tree(from, tree);
-    detail::Cap cap = detail::Cap::around_ball(centre, solid.radius);
+    Cap cap = Cap::around_ball(centre, solid.radius);
     cap.axis = m_light.to_light(cap.axis);
     return occlusion.within(tree, cap);
   }
@@ -256,7 +258,7 @@ private:
   LoadedScene m_scene;
   int m_object;
   std::vector<FilmPoint> m_points;
-  detail::SphereOcclusion m_occlusion;
+  SphereOcclusion m_occlusion;
 };
 
 } // namespace
