@@ -39,41 +39,23 @@ Rgb read_emission(const SceneNode& node) {
   return emission;
 }
 
-void read_colour(const SceneNode& model, std::string_view key, Rgb& value) {
-  if (const auto node = model.find(key))
-    value = read_albedo(*node);
-}
-
-void read_roughness(const SceneNode& node, double& roughness) {
-  read_number(node, "roughness", 1e-3, 1, roughness);
-}
-
-void read_exponent(const SceneNode& node, double& exponent) {
-  read_number(node, "exponent", 1e-3, 1e6, exponent);
-}
-
-void read_own(const SceneNode& node, brdf::Ggx& model) { read_roughness(node, model.roughness); }
-void read_own(const SceneNode& node, brdf::Ward& model) { read_roughness(node, model.roughness); }
-void read_own(const SceneNode& node, brdf::BlinnPhong& model) {
-  read_exponent(node, model.exponent);
-}
-void read_own(const SceneNode& node, brdf::AshikhminShirley& model) {
-  read_exponent(node, model.exponent);
-}
-void read_own(const SceneNode& node, brdf::Lafortune& model) {
-  read_exponent(node, model.exponent);
-  read_number(node, "lobe_xy", -10, 10, model.c_xy);
-  read_number(node, "lobe_z", -10, 10, model.c_z);
-  if (model.c_xy == 0 && model.c_z == 0)
-    node.fail("lobe_xy and lobe_z must not both be zero");
-}
-
-template <class M>
+template <class Model>
 brdf::AnalyticBrdf read(const SceneNode& node) {
-  M model;
-  read_colour(node, "diffuse", model.diffuse);
-  read_colour(node, "specular", model.specular);
-  read_own(node, model);
+  Model model;
+  if (const auto diffuse = node.find("diffuse"))
+    model.diffuse = read_albedo(*diffuse);
+  if (const auto specular = node.find("specular"))
+    model.specular = read_albedo(*specular);
+  if constexpr (requires { model.roughness; })
+    read_number(node, "roughness", 1e-3, 1, model.roughness);
+  if constexpr (requires { model.exponent; })
+    read_number(node, "exponent", 1e-3, 1e6, model.exponent);
+  if constexpr (std::is_same_v<Model, brdf::Lafortune>) {
+    read_number(node, "lobe_xy", -10, 10, model.c_xy);
+    read_number(node, "lobe_z", -10, 10, model.c_z);
+    if (model.c_xy == 0 && model.c_z == 0)
+      node.fail("lobe_xy and lobe_z must not both be zero");
+  }
   return model;
 }
 

@@ -27,12 +27,34 @@ using wavelet::SquarePlace;
 /// cap's edge crosses are descended into. Shared by threads.
 class SphereOcclusion {
 public:
-  SphereOcclusion();
+  SphereOcclusion() {
+    std::vector<SquarePlace> places = {SquarePlace{}};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      m_bounds.push_back(wavelet::square_cap(places[i]));
+      if (places[i].level < finest_level)
+        for (unsigned q = 0; q < 4; ++q)
+          places.push_back(places[i].quadrant(q));
+    }
+  }
 
   /// ∫∫ T over the cap, per channel; the whole square's area is 1.
-  Rgb within(const wavelet::TreeView& tree, const Cap& cap) const;
+  Rgb integral(const wavelet::TreeView& tree, const Cap& cap) const {
+    const Walk walk = {tree, cap, negligible_fraction * luminance(tree.mean)};
+    return wavelet::to_rgb(integral(walk, tree.root(), wavelet::to_lanes(tree.mean), {0, 0}));
+  }
 
 private:
+  /// A cap's edge is treated as straight within constant squares of at least this level and at most
+  /// this size relative to the cap, …
+  static constexpr int straight_level = 5;
+  static constexpr float straight_fraction = 0.25F;
+  /// … within all squares of this level, …
+  static constexpr int finest_level = 8;
+  /// … and within squares that contain less than this fraction of the integral.
+  static constexpr float negligible_fraction = 1e-3F;
+  /// Half a square's mean width over the radius of its bounding circle.
+  static constexpr float half_width = 0.8F;
+
   struct Walk {
     const wavelet::TreeView& tree;
     const Cap& cap;
@@ -43,80 +65,42 @@ private:
     int level;
   };
 
-  Float4 within(const Walk& walk, std::uint32_t node, Float4 mean, const Square& square) const;
+  /// The fraction of a square inside the cap, from the distance of its centre to the cap's edge.
+  static float fraction_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
+    const float along = cap.axis.dot(bounds.centre);
+    const float across = std::sqrt(std::max(1 - along * along, 0.0F));
+    const float inside = cap.sine * along - cap.cosine * across;
+    return std::clamp(0.5F + 0.5F * inside / (half_width * bounds.sine), 0.0F, 1.0F);
+  }
+
+  Float4 integral(const Walk& walk, std::uint32_t node, Float4 mean, const Square& square) const {
+    const wavelet::SquareCap& bounds = m_bounds[square.index];
+    const float weight = wavelet::lane_sum(mean * wavelet::luminance_lanes);
+    const RegionPart part = walk.cap.classify(bounds);
+    if (part == RegionPart::Outside || !(weight > 0))
+      return Float4{};
+    if (part == RegionPart::Inside)
+      return mean;
+    const bool constant = node == wavelet::no_node;
+    const bool straight =
+        square.level >= straight_level && bounds.sine <= straight_fraction * walk.cap.sine;
+    if (square.level == finest_level ||
+        weight * power_of_two(-2 * square.level) <= walk.negligible || (constant && straight))
+      return mean * fraction_inside(bounds, walk.cap);
+    std::array<Float4, 4> means = {mean, mean, mean, mean};
+    std::array<std::uint32_t, 4> children = {node, node, node, node};
+    if (!constant) {
+      means = walk.tree.details(node).children(mean);
+      children = walk.tree.children(node);
+    }
+    Float4 sum = {};
+    for (unsigned q = 0; q < 4; ++q)
+      sum += integral(walk, children[q], means[q], {4 * square.index + 1 + q, square.level + 1});
+    return 0.25F * sum;
+  }
 
   std::vector<wavelet::SquareCap> m_bounds; ///< as in a complete tree
 };
-
-/// Bounds of squares are stored down to this level.
-constexpr int stored_levels = 8;
-
-/// A cap's edge is treated as straight within squares of at least this level, no wider than this
-/// fraction of the cap, …
-constexpr int straight_level = 5;
-constexpr float straight_fraction = 0.25F;
-
-/// … of any size from this level on, …
-constexpr int finest_cap_level = stored_levels;
-
-/// … and in squares that contain less than this fraction of the integral.
-constexpr float negligible_fraction = 1e-3F;
-
-/// Half a square's mean width over the radius of its bounding circle.
-constexpr float half_width = 0.8F;
-
-bool edge_is_straight(const wavelet::SquareCap& bounds, int level, const Cap& cap) {
-  return level >= straight_level && bounds.sine <= straight_fraction * cap.sine;
-}
-
-/// The fraction of a square inside the cap, from the distance of its centre to the cap's edge.
-float fraction_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
-  const float along = cap.axis.dot(bounds.centre);
-  const float across = std::sqrt(std::max(1 - along * along, 0.0F));
-  const float inside = cap.sine * along - cap.cosine * across;
-  return std::clamp(0.5F + 0.5F * inside / (half_width * bounds.sine), 0.0F, 1.0F);
-}
-
-SphereOcclusion::SphereOcclusion() {
-  std::vector<SquarePlace> places = {SquarePlace{}};
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    m_bounds.push_back(wavelet::square_cap(places[i]));
-    if (places[i].level < stored_levels)
-      for (unsigned q = 0; q < 4; ++q)
-        places.push_back(places[i].quadrant(q));
-  }
-}
-
-Rgb SphereOcclusion::within(const wavelet::TreeView& tree, const Cap& cap) const {
-  const Walk walk = {tree, cap, negligible_fraction * luminance(tree.mean)};
-  return wavelet::to_rgb(within(walk, tree.root(), wavelet::to_lanes(tree.mean), {0, 0}));
-}
-
-Float4 SphereOcclusion::within(const Walk& walk, std::uint32_t node, Float4 mean,
-                               const Square& square) const {
-  const wavelet::SquareCap& bounds = m_bounds[square.index];
-  const float weight = wavelet::lane_sum(mean * wavelet::luminance_lanes);
-  const RegionPart part = walk.cap.classify(bounds);
-  if (part == RegionPart::Outside || !(weight > 0))
-    return Float4{};
-  if (part == RegionPart::Inside)
-    return mean;
-  const bool whole = node == wavelet::no_node;
-  if (square.level == finest_cap_level ||
-      weight * power_of_two(-2 * square.level) <= walk.negligible ||
-      (whole && edge_is_straight(bounds, square.level, walk.cap)))
-    return mean * fraction_inside(bounds, walk.cap);
-  std::array<Float4, 4> means = {mean, mean, mean, mean};
-  std::array<std::uint32_t, 4> children = {node, node, node, node};
-  if (!whole) {
-    means = walk.tree.details(node).children(mean);
-    children = walk.tree.children(node);
-  }
-  Float4 sum = {};
-  for (unsigned q = 0; q < 4; ++q)
-    sum += within(walk, children[q], means[q], {4 * square.index + 1 + q, square.level + 1});
-  return 0.25F * sum;
-}
 
 /// The moved object alone.
 class MovedObject {
@@ -131,24 +115,24 @@ public:
   bool intersect(const Ray& ray, Hit& hit) const { return m_shapes.intersect(ray, hit); }
 
   /// ∫∫ of a tree over the directions that the object occludes at a point.
-  Rgb hidden(const Hit& from, const wavelet::TreeView& tree,
-             const SphereOcclusion& occlusion) const {
+  Rgb occluded_part(const Hit& from, const wavelet::TreeView& tree,
+                    const SphereOcclusion& occlusion) const {
     if (m_shapes.solids().empty())
-      return hidden_by_tree(from, tree);
+      return occluded_by_tree(from, tree);
     const Solid& solid = m_shapes.solids().front();
     const Eigen::Vector3d origin = leave(from, from.normal).origin.cast<double>();
     const Eigen::Vector3d centre = solid.center - origin;
     if (centre.dot(from.normal.cast<double>()) < -solid.radius) // below the horizon
       return Rgb::Zero();
     if (solid.kind != SolidKind::WorldSphere)
-      return hidden_by_tree(from, tree);
+      return occluded_by_tree(from, tree);
     Cap cap = Cap::around_ball(centre, solid.radius);
     cap.axis = m_light.to_light(cap.axis);
-    return occlusion.within(tree, cap);
+    return occlusion.integral(tree, cap);
   }
 
 private:
-  Rgb hidden_by_tree(const Hit& from, const wavelet::TreeView& tree) const {
+  Rgb occluded_by_tree(const Hit& from, const wavelet::TreeView& tree) const {
     Hit elsewhere = from;
     elsewhere.object = -1;
     const wavelet::Tree seen = m_visibility->object(0, elsewhere, tree.levels);
@@ -186,12 +170,12 @@ public:
     for (const wavelet::ProductNode& node : product.nodes())
       for (const std::int32_t child : node.child)
         if (child < 0)
-          sum += seen_share(hit, product.leaf(child));
+          sum += visible_part(hit, product.leaf(child));
     return wavelet::to_rgb(sum) * wavelet::sphere_area;
   }
 
 private:
-  Float4 seen_share(const Hit& hit, const wavelet::ProductLeaf& leaf) const {
+  Float4 visible_part(const Hit& hit, const wavelet::ProductLeaf& leaf) const {
     const Float4 value = leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
     if (!(wavelet::lane_sum(value * wavelet::luminance_lanes) > 0))
       return Float4{};
@@ -250,7 +234,7 @@ private:
     const wavelet::TreeView& tree = m_transfer.trees()[pixel];
     if (point.hit.object < 0)
       return tree.mean * wavelet::sphere_area;
-    return ((tree.mean - moved.hidden(point.hit, tree, m_occlusion)) * wavelet::sphere_area)
+    return ((tree.mean - moved.occluded_part(point.hit, tree, m_occlusion)) * wavelet::sphere_area)
         .max(0.0F);
   }
 
