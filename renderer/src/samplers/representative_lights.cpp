@@ -8,9 +8,9 @@ namespace haarlight::renderer {
 namespace {
 
 /// About the resolution of a probe of 1000 pixels.
-constexpr int map_size = 512;
+constexpr int max_map_size = 512;
 /// For coarser probes, so that regions can be smaller than one of their pixels.
-constexpr int least_map_size = 128;
+constexpr int min_map_size = 128;
 
 /// Lights as samples; if there are fewer lights than samples, the remaining samples have pdf 0.
 struct LightSet {
@@ -105,7 +105,7 @@ private:
 } // namespace
 
 LightPixels::LightPixels(const Light& light) {
-  const wavelet::Map map = light.map(map_size, least_map_size);
+  const wavelet::Map map = light.map(max_map_size, min_map_size);
   size = map.size;
   const auto side = static_cast<float>(size);
   solid_angle = wavelet::sphere_area / (side * side);
