@@ -245,14 +245,21 @@ public:
     const PathPoints points = {m_options.points, hash_words(seen.pixel, m_options.seed)};
     m_values.assign(pass.count, Rgb::Zero());
     m_pdfs.assign(pass.count, 0);
-    m_techniques.assign(pass.count, Technique::First);
     m_first.set_hit(seen.hit, seen.wo, m_counts);
-    add_light(seen, pass, points, sums);
+    SumVariance variance = add_light(seen, pass, points);
+    m_other.resize(pass.count);
+    for (std::size_t i = 0; i < pass.count; ++i)
+      m_other[i].luminance = m_light ? -static_cast<double>(luminance(m_values[i])) : 0;
     m_first.add_emitters(points.at(1, pass.first), m_values);
     if (continues(seen.hit.object))
       add_bsdf_samples(pass, points);
-    for (std::size_t i = 0; i < pass.count; ++i)
-      sums.add(m_values[i], true, m_pdfs[i], m_techniques[i]);
+    for (std::size_t i = 0; i < pass.count; ++i) {
+      sums.add(m_values[i], true, m_pdfs[i]);
+      m_other[i].luminance += static_cast<double>(luminance(m_values[i]));
+      m_other[i].visible = true;
+    }
+    variance += variance_of_sums(m_other);
+    sums.add_variance(variance, pass.count);
   }
 
 private:
@@ -262,31 +269,29 @@ private:
            ((m_path.depth != 1 || m_has_emission) && m_scene.shapes().may_occlude(object));
   }
 
-  void add_light(const PixelHit& seen, const Pass& pass, const PathPoints& points,
-                 PixelSums& sums) {
+  /// @return the variance of the sum of the sampler's samples, which is independent of all else; 0
+  /// without a sampler
+  SumVariance add_light(const PixelHit& seen, const Pass& pass, const PathPoints& points) {
     if (!m_light) {
       m_first.add_light(points.at(1, pass.first), m_values);
       ++m_cost.points;
-      return;
+      return {};
     }
     const auto each = static_cast<std::uint32_t>(m_counts.lights);
     m_light->prepare(seen, m_cost);
     m_light->sample({pass.first * each, pass.count * each});
-    m_visible.resize(m_values.size() * each);
-    for (std::size_t i = 0; i < m_visible.size(); ++i) {
-      const Technique technique = m_light->technique(i);
+    m_contributions.resize(m_values.size() * each);
+    for (std::size_t i = 0; i < m_contributions.size(); ++i) {
       m_pdfs[i / each] += m_light->pdf(i) / static_cast<float>(each);
-      m_visible[i] = m_light->visible(i) ? 1 : 0;
-      if (technique == Technique::Second)
-        m_techniques[i / each] = Technique::Second;
-      if (m_visible[i] == 0)
-        continue;
-      // Samples that do not depend on the seed add no variance to their path.
-      const Rgb value = m_light->weight(i) / static_cast<float>(each);
-      (technique == Technique::Fixed ? sums.shadowed : m_values[i / each]) += value;
+      const Rgb weight = m_light->weight(i);
+      const bool visible = m_light->visible(i);
+      m_contributions[i] = m_light->contribution(i, weight, visible);
+      if (visible)
+        m_values[i / each] += weight / static_cast<float>(each);
     }
-    const SumVariance shared = m_light->shared_variance(m_visible);
-    sums.add_shared({shared.shadowed / (each * each), 0, 0});
+    SumVariance variance = m_light->variance_of_sums(m_contributions);
+    variance *= 1.0 / (each * each);
+    return variance;
   }
 
   /// All BSDF samples gather light; the first of each path continues it.
@@ -341,10 +346,10 @@ private:
   std::optional<LightSamples> m_light; ///< none: sampled by the first vertex itself
   PathVertex m_first;
   PathVertex m_later;
-  std::vector<Rgb> m_values;           ///< radiance by path
-  std::vector<float> m_pdfs;           ///< mean of a path's light samples
-  std::vector<Technique> m_techniques; ///< of a path's light samples
-  std::vector<std::uint8_t> m_visible; ///< by light sample
+  std::vector<Rgb> m_values;                 ///< radiance by path
+  std::vector<float> m_pdfs;                 ///< mean of a path's light samples
+  std::vector<Contribution> m_contributions; ///< of the sampler's samples
+  std::vector<Contribution> m_other;         ///< of everything else, by path
   std::vector<BsdfSample> m_bsdf_samples;
 };
 

@@ -101,11 +101,20 @@ void Lobe::pdfs(std::span<DirectionSample> samples) {
     samples[i].pdf = m_descents[i].pdf / wavelet::sphere_area;
 }
 
-float MisSampler::combine(float own, float other) const {
-  if (m_heuristic == Heuristic::Balance)
-    return own + other;
-  // The square of a sharp lobe's density over a tiny one must stay finite.
-  return own > 0 ? std::min(own + other * (other / own), 1e30F) : 0.0F;
+DirectionSample MisSampler::combined(const Vec3& direction, Technique technique, float light,
+                                     float lobe) const {
+  const float own = technique == Technique::First ? light : lobe;
+  const float other = technique == Technique::First ? lobe : light;
+  float pdf = own + other;
+  if (m_heuristic == Heuristic::Power) // the square of a sharp lobe's density must stay finite
+    pdf = own > 0 ? std::min(own + other * (other / own), 1e30F) : 0.0F;
+  const float sum = light + lobe;
+  if (!(sum > 0))
+    return {direction, pdf, technique};
+  const float balance = light / sum;
+  const float power = balance * balance / (balance * balance + (1 - balance) * (1 - balance));
+  return {
+      direction, pdf, technique, {balance, m_heuristic == Heuristic::Balance ? balance : power}};
 }
 
 void MisSampler::sample(const PointSource& points, std::span<DirectionSample> out) {
@@ -121,16 +130,16 @@ void MisSampler::sample(const PointSource& points, std::span<DirectionSample> ou
     m_light_pdfs.push_back(s.pdf);
   m_lobe.pdfs(from_light);
   for (std::size_t i = 0; i < light_count; ++i)
-    from_light[i].pdf =
-        combine(light_share * m_light_pdfs[i], (1.0F - light_share) * from_light[i].pdf);
+    from_light[i] =
+        combined(from_light[i].direction, Technique::First, light_share * m_light_pdfs[i],
+                 (1.0F - light_share) * from_light[i].pdf);
 
   m_points.resize(from_lobe.size());
   points.fill(1, m_points);
   m_lobe.sample(m_points, from_lobe);
-  for (DirectionSample& s : from_lobe) {
-    s.pdf = combine((1.0F - light_share) * s.pdf, light_share * m_light.pdf(s.direction));
-    s.technique = Technique::Second;
-  }
+  for (DirectionSample& s : from_lobe)
+    s = combined(s.direction, Technique::Second, light_share * m_light.pdf(s.direction),
+                 (1.0F - light_share) * s.pdf);
 }
 
 float MisSampler::pdf(const Vec3& direction, std::size_t count) const {

@@ -94,8 +94,9 @@ public:
   float pdf(const Vec3& direction, std::size_t count) const override;
 
 private:
-  /// @param own,other shares of the technique that drew the sample and of the other one
-  float combine(float own, float other) const;
+  /// A sample of the light (First) or of the lobe (Second). @param light,lobe shares s_i of both
+  DirectionSample combined(const Vec3& direction, Technique technique, float light,
+                           float lobe) const;
 
   LightSampler m_light;
   Heuristic m_heuristic;

@@ -142,11 +142,12 @@ public:
     const std::span<DirectionSample> from_light = out.last(light_count);
     ProductTreeSampler::sample(points, from_product);
     for (DirectionSample& s : from_product)
-      s.pdf = (1 - fraction) * s.pdf + fraction * m_light.pdf(s.direction);
+      s = mixed(s.direction, Technique::First, (1 - fraction) * s.pdf,
+                fraction * m_light.pdf(s.direction));
     m_light.sample(points, from_light);
     for (DirectionSample& s : from_light)
-      s = {s.direction, (1 - fraction) * ProductTreeSampler::pdf(s.direction, 1) + fraction * s.pdf,
-           Technique::Second};
+      s = mixed(s.direction, Technique::Second,
+                (1 - fraction) * ProductTreeSampler::pdf(s.direction, 1), fraction * s.pdf);
   }
 
   float pdf(const Vec3& direction, std::size_t count) const override {
@@ -165,6 +166,15 @@ private:
       return {1, 4};
     const std::size_t least = std::clamp<std::size_t>(count / 4, 1, 2);
     return {std::max(count / m_configuration.samples_per_light_sample, least), count};
+  }
+
+  /// A sample of the product (First) or of the light (Second).
+  /// @param product,light parts of both in the density
+  static DirectionSample mixed(const Vec3& direction, Technique technique, float product,
+                               float light) {
+    const float pdf = product + light;
+    const float first = pdf > 0 ? product / pdf : 1.0F;
+    return {direction, pdf, technique, {first, first}};
   }
 
   const ProductConfiguration& m_configuration;

@@ -1,6 +1,7 @@
 #include <renderer/scene/camera.h>
 #include <renderer/transfer/transfer.h>
 
+#include <wavelet/base/error.h>
 #include <wavelet/base/parallel.h>
 #include <wavelet/file/input_file.h>
 #include <wavelet/square/sphere_map.h>
@@ -47,9 +48,14 @@ struct BuiltTree {
   wavelet::ProjectionReport report;
 };
 
-void account(const BuiltTree& built, TransferReport& sums) {
+void account(const BuiltTree& built, const std::string& scene_path, TransferReport& sums) {
   if (built.report.squares == 0)
     return;
+  if (!std::isfinite(built.report.dropped + built.report.unresolved))
+    throw_input_error(scene_path,
+                      "light and reflectances are too large for a transfer: the squares "
+                      "of their products exceed the largest single-precision number; "
+                      "the light must be scaled down");
   ++sums.pixels;
   sums.nodes += built.tree.links.size();
   sums.mean_squares += static_cast<double>(built.report.squares);
@@ -207,7 +213,7 @@ TransferReport build_transfer(const LoadedScene& scene, const Variation& variati
         batch[i] = {maker.make(points[first + i]), maker.report()};
     });
     for (BuiltTree& built : batch) {
-      account(built, report);
+      account(built, scene.description().path, report);
       sink.add(std::move(built.tree));
     }
     if (progress)

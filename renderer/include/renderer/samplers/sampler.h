@@ -25,6 +25,12 @@ enum class Technique : std::uint8_t {
 };
 inline constexpr std::size_t random_techniques = 2; ///< First and Second
 
+/// MIS weights of Technique::First in a direction; those of Second are the complements to 1.
+struct FirstWeights {
+  float balance = 1;   ///< of the balance heuristic, n1 p1 / (n1 p1 + n2 p2)
+  float heuristic = 1; ///< of the sampler's heuristic
+};
+
 /// A direction and its density. For several techniques this is their mean density, weighted by
 /// their numbers of samples, so that f/pdf is the balance heuristic; for resampled directions it is
 /// the reciprocal of their weight.
@@ -32,6 +38,7 @@ struct DirectionSample {
   Vec3 direction; ///< unit, in the light's frame
   float pdf = 0;  ///< sr⁻¹; 0 = no direction could be drawn, the sample contributes 0
   Technique technique = Technique::First;
+  FirstWeights first = {}; ///< for the variance if a technique drew a single sample
 };
 
 /// Variances and covariance of two sums over samples, Σ w v and Σ w: w is the luminance of a
@@ -40,6 +47,19 @@ struct SumVariance {
   double shadowed = 0;
   double covariance = 0;
   double unshadowed = 0;
+
+  SumVariance& operator+=(const SumVariance& other) {
+    shadowed += other.shadowed;
+    covariance += other.covariance;
+    unshadowed += other.unshadowed;
+    return *this;
+  }
+  SumVariance& operator*=(double factor) {
+    shadowed *= factor;
+    covariance *= factor;
+    unshadowed *= factor;
+    return *this;
+  }
 };
 
 /// The point sets of a pixel's samples. Sets of different dimensions are independent of each other.
