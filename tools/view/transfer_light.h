@@ -4,7 +4,6 @@
 #include <view/packed_scene.h>
 
 #include <renderer/transfer/relight.h>
-#include <renderer/transfer/relight.h>
 
 #include <vector>
 

@@ -69,8 +69,8 @@ struct Hit {
   float t = std::numeric_limits<float>::infinity();
   Vec3 position = Vec3::Zero(); ///< projected onto the surface, exact to float rounding
   Vec3 normal = Vec3::UnitZ();  ///< unit, geometric, outward for closed shapes; of planes and disks
-                               ///< as given, whichever side is hit
-  int object = -1; ///< index in the order the shapes were added
+                                ///< as given, whichever side is hit
+  int object = -1;              ///< index in the order the shapes were added
 };
 
 /// `position` offset from its surface, to the side of `direction`. Surfaces are evaluated in
