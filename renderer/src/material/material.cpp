@@ -197,15 +197,16 @@ private:
 
 void require_cosine(const std::string& path, const TreeTable& table) {
   if (!table.info().cosine)
-    throw_input_error(path, "was made with --no-cosine; rendering needs the cosine in the set");
+    throw_input_error(path,
+                      "was made with --no-cosine; rendering needs a set that includes the cosine");
 }
 
 std::shared_ptr<const TreeTable> load_lobes(const std::string& path) {
   auto lobes = std::make_shared<TreeTable>(path, wavelet::SetKind::Brdf);
   require_cosine(path, *lobes);
   if (lobes->info().rolls != 1)
-    throw_input_error(path, "holds a set with rolls, which belongs under \"table\"; "
-                            "\"haar\" wants one made with --roll 1");
+    throw_input_error(path, "holds a set with rolls, which belongs under the key \"table\"; "
+                            "\"haar\" needs a set made with --roll 1");
   return lobes;
 }
 
@@ -222,8 +223,8 @@ make_source_reflectance(const MaterialDescription& description, brdf::Lookup loo
     return tree_reflectance(lobes);
   if (description.table.empty())
     return lambert_reflectance(Rgb::Zero());
-  throw_input_error(description.table, "is all that material \"" + description.name +
-                                           "\" names; it needs \"brdf\" or \"haar\" as well");
+  throw_input_error(description.table, "is the only file of material \"" + description.name +
+                                           "\"; it needs \"brdf\" or \"haar\", too");
 }
 
 } // namespace
@@ -234,8 +235,8 @@ TreeTable::TreeTable(const std::string& path, SetKind kind, wavelet::Check check
     : m_file(std::make_unique<wavelet::TreeSet>(path, check)), m_info(m_file->info()) {
   if (m_info.kind != kind)
     throw_input_error(path, kind == SetKind::Brdf
-                                ? "holds no BRDF set; one made by brdf2maps is needed"
-                                : "holds no light set; one made by probe2maps is needed");
+                                ? "is not a BRDF set; a .haar of brdf2maps is needed"
+                                : "is not a light set; a .haar of probe2maps is needed");
 }
 
 TreeTable::TreeTable(const wavelet::MapSource& source) : m_info(source.info()) {

@@ -38,18 +38,18 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
 void LoadedScene::check_tables(const std::string& sampler) const {
   const TreeTable* light = m_light.rotated_table();
   if (light == nullptr)
-    throw_input_error(m_description.path,
-                      "light: names no \"table\", which " + sampler +
-                          " needs: a .haar made by probe2maps --orientations M");
+    throw_input_error(m_description.path, "light: the key \"table\" is missing; the sampler " +
+                                              sampler +
+                                              " needs a .haar of probe2maps --orientations M");
   for (std::size_t i = 0; i < m_materials.size(); ++i) {
     const TreeTable* rolls = m_materials[i].roll_table();
     if (rolls == nullptr)
       throw_input_error(m_description.path,
                         std::string("materials.")
                             .append(m_materials[i].name())
-                            .append(": names no \"table\", which ")
+                            .append(": the key \"table\" is missing; the sampler ")
                             .append(sampler)
-                            .append(" needs: a .haar made by brdf2maps --roll N"));
+                            .append(" needs a .haar of brdf2maps --roll N"));
   }
 }
 

@@ -41,7 +41,7 @@ int object_index(const SceneDescription& scene, const std::string& name) {
   if (read.ec == std::errc() && read.ptr == end && number >= 0 && number < count)
     return number;
   throw std::invalid_argument("the scene has no object '" + name +
-                              "'; name one by its \"name\" or by its number, 0 to " +
+                              "'; give its \"name\" or its number, 0 to " +
                               std::to_string(count - 1));
 }
 
@@ -72,7 +72,8 @@ Variation variation_from_text(const SceneDescription& scene, const std::string& 
   if (begins_with(text, material_prefix))
     return {Varying::Material,
             material_index(scene, text.substr(std::string(material_prefix).size()))};
-  throw std::invalid_argument("'" + text + "' is none of light, object:NAME, material:NAME, view");
+  throw std::invalid_argument("'" + text +
+                              "' is not one of light, object:NAME, material:NAME, view");
 }
 
 Transfer::Transfer(const std::string& path) : m_set(wavelet::open_tree_set(path)) {
@@ -86,11 +87,11 @@ Transfer::Transfer(const std::string& path) : m_set(wavelet::open_tree_set(path)
 
 Variation Transfer::variation(const SceneDescription& scene) const {
   if (scene.hash != provenance().get("scene_hash"))
-    throw_input_error(scene.path, std::string("is not the scene that ")
+    throw_input_error(scene.path, std::string("is not the scene of ")
                                       .append(path())
-                                      .append(" was made of, ")
+                                      .append(", which is ")
                                       .append(scene_name())
-                                      .append(" of hash ")
+                                      .append(" with hash ")
                                       .append(provenance().get("scene_hash")));
   try {
     return variation_from_text(scene, varying_text());
