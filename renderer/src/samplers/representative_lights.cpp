@@ -50,14 +50,14 @@ private:
 
 class RepresentativeLightSampler : public Sampler {
 public:
-  explicit RepresentativeLightSampler(std::shared_ptr<const LightSetCache> book)
-      : m_book(std::move(book)) {}
+  explicit RepresentativeLightSampler(std::shared_ptr<const LightSetCache> sets)
+      : m_sets(std::move(sets)) {}
 
   void prepare(const ShadingPoint& /*point*/, const Material& /*material*/) override {}
 
   void sample(const PointSource& /*points*/, std::span<DirectionSample> out) override {
     if (m_lights == nullptr || m_lights->samples.size() != out.size())
-      m_lights = &m_book->of(out.size());
+      m_lights = &m_sets->of(out.size());
     std::ranges::copy(m_lights->samples, out.begin());
   }
 
@@ -65,7 +65,7 @@ public:
   float pdf(const Vec3& direction, std::size_t count) const override {
     float most = -2;
     float result = 0;
-    for (const DirectionSample& s : m_book->of(count).samples) {
+    for (const DirectionSample& s : m_sets->of(count).samples) {
       const float cosine = s.direction.dot(direction);
       if (s.pdf > 0 && cosine > most) {
         most = cosine;
@@ -81,25 +81,25 @@ public:
   }
 
 private:
-  std::shared_ptr<const LightSetCache> m_book;
+  std::shared_ptr<const LightSetCache> m_sets;
   const LightSet* m_lights = nullptr; ///< of the last count
 };
 
 class RepresentativeLightFactory : public SamplerFactory {
 public:
   RepresentativeLightFactory(const Light& light, MakeRepresentativeLights make, std::size_t count)
-      : m_book(std::make_shared<LightSetCache>(light, std::move(make))) {
+      : m_sets(std::make_shared<LightSetCache>(light, std::move(make))) {
     if (count > 0)
-      m_book->of(count);
+      m_sets->of(count);
   }
 
   std::unique_ptr<Sampler> make(std::size_t /*count*/) const override {
-    return std::make_unique<RepresentativeLightSampler>(m_book);
+    return std::make_unique<RepresentativeLightSampler>(m_sets);
   }
 
 private:
   std::shared_ptr<const LightSetCache>
-      m_book; ///< shared with samplers, which may outlive the factory
+      m_sets; ///< shared with samplers, which may outlive the factory
 };
 
 } // namespace
