@@ -22,6 +22,9 @@ struct Emitter {
   Vec3 face_areas = Vec3::Zero(); ///< world areas of a box's faces across x, y, z; of a disk in z
 };
 
+/// Weight of the balance heuristic. @param own,other numbers of samples times density
+inline float balance_heuristic(float own, float other) { return own / (own + other); }
+
 /// A direction to an emitter, which may be occluded.
 struct EmitterDirection {
   Vec3 direction = Vec3::UnitZ(); ///< unit, world

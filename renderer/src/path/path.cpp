@@ -57,9 +57,6 @@ struct VertexCounts {
   bool shares_distant = true; ///< whether BSDF samples that escape contribute the distant light
 };
 
-/// The balance heuristic. @param own,other numbers of samples times density
-float balance(float own, float other) { return own / (own + other); }
-
 /// A surface point on a path: its reflected direct light, and the continuation of paths. Set to one
 /// point after another, for any number of paths at each; one per thread.
 class PathVertex {
@@ -172,7 +169,8 @@ private:
   Rgb distant_light(const BsdfSample& sample) const {
     const Light& light = m_scene.light();
     const Vec3 w = light.to_light(sample.direction);
-    return light.radiance(w) * balance(bsdf_samples() * sample.pdf, lights() * light.pdf(w));
+    return light.radiance(w) *
+           balance_heuristic(bsdf_samples() * sample.pdf, lights() * light.pdf(w));
   }
 
   /// The emission of the surface that a BSDF sample hits, weighted against add_emitters().
@@ -181,7 +179,7 @@ private:
     if (m_emitters.empty() || !(emission > 0).any())
       return emission;
     const float pdf = m_emitters.pdf(m_hit, sample.direction, hit);
-    return emission * balance(bsdf_samples() * sample.pdf, lights() * pdf);
+    return emission * balance_heuristic(bsdf_samples() * sample.pdf, lights() * pdf);
   }
 
   float lights() const { return static_cast<float>(m_counts.lights); }

@@ -68,7 +68,7 @@ double mean_error(detail::ConservativeVisibility& squares, const ShapeSet& set, 
 TEST_CASE("estimates of what is seen of squares are near the rays' share, and 0 only where that is",
           "[seen]") {
   for (const Pair& pair : pairs()) {
-    const ShapeSet set = intersection(pair);
+    const ShapeSet set = both(pair);
     const Hit hit = top_of_sphere();
     detail::ConservativeVisibility squares(set, turned_light());
     squares.set_shading_point(hit);
@@ -81,7 +81,7 @@ TEST_CASE("estimates of what is seen of squares are near the rays' share, and 0 
 TEST_CASE("squares within a square have no occluders that it has not", "[seen]") {
   for (const Pair& pair : pairs()) {
     INFO(pair.name);
-    const ShapeSet set = intersection(pair);
+    const ShapeSet set = both(pair);
     const Hit hit = top_of_sphere();
     detail::ConservativeVisibility squares(set, turned_light());
     squares.set_shading_point(hit);

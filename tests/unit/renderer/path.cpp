@@ -2,6 +2,7 @@
 
 #include "path/emitters.h"
 #include "sampler_fixture.h"
+#include "samplers/basic_samplers.h"
 #include "temporary_folder.h"
 
 #include <renderer/path/path.h>
@@ -306,7 +307,8 @@ TEST_CASE("directions to emitters have the density they claim, and weights add u
       if (loaded.shapes().intersect(leave(floor, to->direction), hit) && hit.object == to->object) {
         const float pdf = emitters.pdf(floor, to->direction, hit);
         const float other = lobe.pdf(to->direction);
-        most_off = std::max(most_off, std::abs(balance(pdf, other) + balance(other, pdf) - 1));
+        most_off = std::max(
+            most_off, std::abs(balance_heuristic(pdf, other) + balance_heuristic(other, pdf) - 1));
         claimed += 1 / static_cast<double>(pdf) / n;
       }
       const float z = 1 - 2 * points[i].x(); // uniform over the sphere
