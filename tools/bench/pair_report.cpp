@@ -165,7 +165,7 @@ std::string pictures(const PairResult& pair) {
 html::PlotStyle style_of(renderer::SamplerKind kind) {
   const auto index = static_cast<std::size_t>(kind);
   return {series_colour(index), static_cast<int>(index) % marker_count,
-          renderer::traits(kind).claim == renderer::SamplerClaim::Biased};
+          renderer::traits(kind).bias == renderer::Bias::Biased};
 }
 
 std::string sampler_html(const std::string& name) {

@@ -49,7 +49,7 @@ CameraDescription OrbitCamera::camera() const {
       std::cos(elevation) * (std::cos(azimuth) * ahead + std::sin(azimuth) * across) +
       std::sin(elevation) * up;
   CameraDescription camera = m_start;
-  const bool orthographic = camera.projection == renderer::Projection::Orthographic;
+  const bool orthographic = camera.projection == renderer::CameraProjection::Orthographic;
   camera.height *= orthographic ? m_scale : 1;
   const double distance = m_distance * (orthographic ? 1 : m_scale);
   camera.from = m_start.to + (distance * direction).cast<float>();

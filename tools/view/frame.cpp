@@ -17,7 +17,7 @@ std::vector<float> components(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// A ray's direction scaled so that it is linear in film coordinates.
 Vec3 linear_direction(const Ray& ray, const CameraDescription& camera) {
-  if (camera.projection == renderer::Projection::Orthographic)
+  if (camera.projection == renderer::CameraProjection::Orthographic)
     return ray.direction;
   return ray.direction / ray.direction.dot((camera.to - camera.from).normalized());
 }

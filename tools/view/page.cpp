@@ -23,7 +23,7 @@ Json json_list(const float* values, int count) {
 }
 
 Json camera_json(const renderer::CameraDescription& camera) {
-  const bool orthographic = camera.projection == renderer::Projection::Orthographic;
+  const bool orthographic = camera.projection == renderer::CameraProjection::Orthographic;
   return {{"projection", orthographic ? "orthographic" : "perspective"},
           {"from", json_list(camera.from.data(), 3)},
           {"to", json_list(camera.to.data(), 3)},

@@ -12,7 +12,6 @@
 #include <view/packing.h>
 
 #include <renderer/transfer/relight.h>
-#include <renderer/transfer/turned_light.h>
 #include <wavelet/transform/dense_coefficients.h>
 
 #include <span>
@@ -55,7 +54,7 @@ private:
   int m_height;
   bool m_visible; ///< where no object is hit
   renderer::Light m_light;
-  renderer::TurnedLight m_map;
+  renderer::RotatedLight m_map;
   const std::vector<renderer::FilmPoint>& m_points;
 };
 

@@ -53,7 +53,7 @@ void draw_frame(const tool::RelightInput& input, const Options& options, tool::R
   const TransferLight light(transfer, input.scene(), points);
   const EglContext context;
   TransferDrawer drawer(pack_transfer(transfer.trees(), points, width, height), width, height);
-  const Eigen::Matrix3f rotation = renderer::turn_of(rotation_angles(options));
+  const Eigen::Matrix3f rotation = renderer::rotation_of(rotation_angles(options));
   const double ms_per_turn = median_time(options.repeat, [&] {
     const auto begin = std::chrono::steady_clock::now();
     drawer.set_light(light.rotated(rotation));

@@ -2,7 +2,7 @@
 // The scenes that the viewer shows: spheres and planes with stored trees. Nothing here calls GL.
 
 #include <renderer/light/light.h>
-#include <renderer/material/reflectance.h>
+#include <renderer/material/material.h>
 #include <renderer/scene/camera.h>
 #include <renderer/scene/scene.h>
 #include <renderer/shapes/shapes.h>

@@ -239,7 +239,7 @@ private:
     const auto& [yaw, pitch, roll] = m_state.rotate;
     if (!m_drawn || m_drawn->rotate != m_state.rotate)
       m_drawer.set_light(
-          m_light.rotated(renderer::turn_of(Eigen::Vector3f(yaw, pitch, roll).cast<double>())));
+          m_light.rotated(renderer::rotation_of(Eigen::Vector3f(yaw, pitch, roll).cast<double>())));
     m_drawer.draw(m_state.level);
     m_drawn = m_state;
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();

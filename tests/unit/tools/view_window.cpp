@@ -54,7 +54,7 @@ TEST_CASE("zoom changes the distance, or the height of an orthographic camera", 
   OrbitCamera perspective(start);
   perspective.zoom(4);
   CHECK(near(perspective.camera().from, {1, 0, 0.5F}));
-  start.projection = renderer::Projection::Orthographic;
+  start.projection = renderer::CameraProjection::Orthographic;
   start.height = 3;
   OrbitCamera orthographic(start);
   orthographic.zoom(4);
