@@ -174,6 +174,7 @@ private:
   template <class E>
   static std::vector<std::string> words_of(const std::vector<std::pair<std::string, E>>& choices) {
     std::vector<std::string> words;
+    words.reserve(choices.size());
     for (const auto& choice : choices)
       words.push_back(choice.first);
     return words;
