@@ -3,7 +3,7 @@
 #include <support/tree_argument.h>
 #include <support/words.h>
 
-#include <wavelet/file/file_hash.h>
+#include <wavelet/file/input_file.h>
 #include <wavelet/product/multiply.h>
 #include <wavelet/square/sphere_map.h>
 

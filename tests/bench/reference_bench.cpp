@@ -116,9 +116,8 @@ void add_quadrants(const TreeView& tree, std::uint32_t node, const Square& s,
   squares.insert(s);
   if (node == no_node)
     return;
-  for (int q = 0; q < 4; ++q)
-    add_quadrants(tree, tree.child(node, static_cast<unsigned>(q)), child(s, q & 1, q >> 1),
-                  squares);
+  for (unsigned q = 0; q < 4; ++q)
+    add_quadrants(tree, tree.child(node, q), s.quadrant(q), squares);
 }
 
 struct Factors {
@@ -216,16 +215,12 @@ struct DenseProduct {
 };
 
 struct SynchronousRun {
-  TreeFactor light;
-  TreeFactor brdf;
+  std::array<TreeFactor, 2> factors;
   SynchronousProduct product = {};
   explicit SynchronousRun(const Factors& f)
-      : light(f.light.tree.view()), brdf(f.brdf.tree.view()) {}
+      : factors{TreeFactor(f.light.tree.view()), TreeFactor(f.brdf.tree.view())} {}
 
-  Rgb operator()() {
-    const wavelet::Factor* const factors[] = {&light, &brdf};
-    return product.build(factors).integral();
-  }
+  Rgb operator()() { return product.build(factors).integral(); }
 };
 
 /// PRODUCT: all coefficients.

@@ -4,7 +4,7 @@
 #include "walk_trees.h"
 
 #include <wavelet/base/parallel.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 using namespace haarlight;
 

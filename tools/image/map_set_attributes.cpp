@@ -16,7 +16,7 @@ using wavelet::Fold;
 using wavelet::SetInfo;
 using wavelet::SetKind;
 
-constexpr std::array<const char*, 3> kind_names = {"generic", "brdf", "light"};
+constexpr std::array<const char*, 4> kind_names = {"generic", "brdf", "light", "transfer"};
 constexpr std::array<const char*, 3> fold_names = {"none", "rotations", "mirrors"};
 constexpr int largest_size = 1 << 13; // as .haar files have it
 constexpr int most_columns = 1 << 16;

@@ -80,7 +80,7 @@ SquareValues transposed(const SquareValues& v) {
 
 } // namespace
 
-SquareCap square_cap(const SquarePlace& square) {
+SquareCap square_cap(const Square& square) {
   SquareCap cap;
   const float side = power_of_two(-square.level);
   cap.centre = square_to_sphere(Vec2((static_cast<float>(square.column) + 0.5F) * side,
@@ -104,7 +104,7 @@ SquareCap square_cap(const SquarePlace& square) {
   return cap;
 }
 
-SquareDirections square_directions(const SquarePlace& square) {
+SquareDirections square_directions(const Square& square) {
   const float side = power_of_two(-square.level);
   const float u = static_cast<float>(square.column) * side;
   const float v = static_cast<float>(square.row) * side;

@@ -176,10 +176,7 @@ private:
     link(region, node);
     m_nodes.emplace_back();
     m_parent_slots.push_back(region.slot);
-    std::array<Float4, 4> light;
-    light.fill(region.light);
-    if (region.node != wavelet::no_node)
-      light = m_light.details(region.node).children(region.light);
+    const wavelet::TreeQuadrants light = m_light.split(region.node, region.light);
     Region quadrant = region;
     ++quadrant.level;
     for (unsigned q = 0; q < 4; ++q) {
@@ -188,8 +185,8 @@ private:
       quadrant.y = 2 * region.y + (q >> 1U);
       quadrant.begin = q == 0 ? region.begin : quadrant.end;
       quadrant.end = end_of_quadrant(quadrant.begin, region.end, quadrant.level, q);
-      quadrant.light = light[q];
-      quadrant.node = m_light.child(region.node, q);
+      quadrant.light = light.means[q];
+      quadrant.node = light.nodes[q];
       m_pending.push_back(quadrant);
     }
   }

@@ -24,7 +24,7 @@ class ProductSampler : public LightMixture {
 public:
   ProductSampler(const LoadedScene& scene, const ProductOptions& options)
       : LightMixture(scene.light(), samples_each_of_light), m_builder(scene.light().tree()),
-        m_options(options), m_occlusion(scene.shapes(), scene.light()) {}
+        m_options(options), m_visibility(scene.shapes(), scene.light()) {}
 
   void forget() override { m_follows = false; }
 
@@ -32,11 +32,11 @@ public:
     const wavelet::RotatedReflectance reflectance = material.reflectance(point);
     const bool shadowed = point.hit != nullptr;
     if (shadowed)
-      m_occlusion.turn_to(*point.hit);
+      m_visibility.set_shading_point(*point.hit);
     const wavelet::AdaptiveOptions& options = shadowed ? m_options.shadowed : m_options.open;
-    const wavelet::Occlusion* occlusion = shadowed ? &m_occlusion : nullptr;
-    m_product = m_follows ? &m_builder.follow(reflectance, options, occlusion)
-                          : &m_builder.build(reflectance, options, occlusion);
+    wavelet::SquareVisibility* visibility = shadowed ? &m_visibility : nullptr;
+    m_product = m_follows ? &m_builder.build_or_reuse(reflectance, options, visibility)
+                          : &m_builder.build(reflectance, options, visibility);
     m_follows = true;
     m_mixes = shadowed && !m_product->empty();
   }
@@ -44,7 +44,7 @@ public:
 private:
   wavelet::AdaptiveProduct m_builder;
   ProductOptions m_options;
-  detail::HitOcclusion m_occlusion;
+  detail::HitOcclusion m_visibility;
   bool m_follows = false;
 };
 

@@ -43,9 +43,9 @@ private:
     if (place.material == &material && place.cells == cells)
       return place.product;
     const RollEntry entry = roll_entry(*material.roll_table(), cells);
-    const wavelet::TreeFactor light(m_table.tree(cells.light_column, cells.light_row));
-    const wavelet::TreeFactor lobe(entry.tree, entry.symmetry);
-    const wavelet::Factor* const factors[] = {&light, &lobe};
+    const wavelet::TreeFactor factors[] = {
+        wavelet::TreeFactor(m_table.tree(cells.light_column, cells.light_row)),
+        wavelet::TreeFactor(entry.tree, entry.symmetry)};
     place = {&material, cells, m_builder.build(factors)};
     return place.product;
   }

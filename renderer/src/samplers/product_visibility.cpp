@@ -28,10 +28,11 @@ public:
   void prepare(const ShadingPoint& point, const Material& material) override {
     const wavelet::RotatedReflectance reflectance = material.reflectance(point);
     if (point.hit != nullptr) {
-      m_visibility.turn_to(*point.hit);
-      m_product = &m_builder.build(reflectance, m_options.shadowed, m_visibility);
+      m_visibility.set_shading_point(*point.hit);
+      m_product = &m_builder.build(reflectance, m_options.shadowed, &m_visibility,
+                                   wavelet::VisibilityTest::Squares);
     } else {
-      m_product = m_follows ? &m_builder.follow(reflectance, m_options.open)
+      m_product = m_follows ? &m_builder.build_or_reuse(reflectance, m_options.open)
                             : &m_builder.build(reflectance, m_options.open);
     }
     m_follows = true;

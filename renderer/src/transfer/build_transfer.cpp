@@ -71,13 +71,13 @@ double default_transfer_tolerance(Varying varying) {
 wavelet::SetInfo transfer_info(const SceneDescription& scene, const Variation& variation,
                                const wavelet::ProjectionOptions& options, int width, int height) {
   wavelet::SetInfo info;
+  info.kind = wavelet::SetKind::Transfer;
   info.size = 1 << options.levels;
   info.columns = width;
   info.rows = height;
   info.frame = "the light's: the world (right +x, up +y, forward -z) turned by the scene's rotate";
   info.units = units_of(variation.varying);
   Provenance& p = info.provenance;
-  p.set("transfer", "1");
   p.set("scene", base_name(scene.path));
   p.set("scene_hash", scene.hash);
   p.set("vary", variation_text(scene, variation));

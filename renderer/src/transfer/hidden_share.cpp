@@ -1,13 +1,12 @@
 #include "transfer/hidden_share.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace haarlight::renderer::detail {
 
 using wavelet::RegionPart;
-using wavelet::SquarePlace;
+using wavelet::Square;
 
 namespace {
 
@@ -43,7 +42,7 @@ float share_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
 } // namespace
 
 HiddenShare::HiddenShare() {
-  std::vector<SquarePlace> places = {SquarePlace{}};
+  std::vector<Square> places = {Square{}};
   for (std::size_t i = 0; i < places.size(); ++i) {
     m_bounds.push_back(wavelet::square_cap(places[i]));
     if (places[i].level < kept_levels)
@@ -58,7 +57,7 @@ Rgb HiddenShare::within(const wavelet::TreeView& tree, const Cap& cap) const {
 }
 
 Float4 HiddenShare::within(const Walk& walk, std::uint32_t node, Float4 mean,
-                           const Square& square) const {
+                           const Place& square) const {
   const wavelet::SquareCap& bounds = m_bounds[square.index];
   const float weight = wavelet::lane_sum(mean * wavelet::luminance_lanes);
   const RegionPart part = walk.cap.classify(bounds);
@@ -66,19 +65,15 @@ Float4 HiddenShare::within(const Walk& walk, std::uint32_t node, Float4 mean,
     return Float4{};
   if (part == RegionPart::Inside)
     return mean;
-  const bool whole = node == wavelet::no_node;
+  const bool constant = node == wavelet::no_node;
   if (square.level == finest_level || weight * power_of_two(-2 * square.level) <= walk.negligible ||
-      (whole && edge_is_straight(bounds, square.level, walk.cap)))
+      (constant && edge_is_straight(bounds, square.level, walk.cap)))
     return mean * share_inside(bounds, walk.cap);
-  std::array<Float4, 4> means = {mean, mean, mean, mean};
-  std::array<std::uint32_t, 4> children = {node, node, node, node};
-  if (!whole) {
-    means = walk.tree.details(node).children(mean);
-    children = walk.tree.children(node);
-  }
+  const wavelet::TreeQuadrants quadrants = walk.tree.split(node, mean);
   Float4 sum = {};
   for (unsigned q = 0; q < 4; ++q)
-    sum += within(walk, children[q], means[q], {4 * square.index + 1 + q, square.level + 1});
+    sum += within(walk, quadrants.nodes[q], quadrants.means[q],
+                  {4 * square.index + 1 + q, square.level + 1});
   return 0.25F * sum;
 }
 

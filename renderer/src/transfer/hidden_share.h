@@ -24,12 +24,12 @@ private:
     const Cap& cap;
     float negligible; ///< luminance times area
   };
-  struct Square {
+  struct Place {
     std::uint32_t index; ///< in a complete tree: quadrant q of i is 4 i + 1 + q
     int level;
   };
 
-  Float4 within(const Walk& walk, std::uint32_t node, Float4 mean, const Square& square) const;
+  Float4 within(const Walk& walk, std::uint32_t node, Float4 mean, const Place& square) const;
 
   std::vector<wavelet::SquareCap> m_bounds; ///< as in a complete tree
 };

@@ -3,8 +3,8 @@
 #include <renderer/transfer/turned_light.h>
 
 #include <wavelet/base/parallel.h>
+#include <wavelet/product/multiply.h>
 #include <wavelet/square/sphere_map.h>
-#include <wavelet/transform/dense_coefficients.h>
 
 namespace haarlight::renderer {
 namespace {

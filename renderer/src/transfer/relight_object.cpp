@@ -61,7 +61,7 @@ class ObjectShader {
 public:
   ObjectShader(const LoadedScene& scene, int object)
       : m_scene(scene), m_object(object), m_product(scene.light().tree()) {
-    m_options.drift_bound = 0; // integrals have to be each point's own
+    m_options.reuse_variance_bound = 0; // integrals have to be each point's own
     for (int i = 0; i < static_cast<int>(scene.description().objects.size()); ++i) {
       const ObjectDescription& other = scene.description().objects[static_cast<std::size_t>(i)];
       if (i != object)
@@ -74,8 +74,9 @@ public:
     const ShadingPoint point = shading_point(light.to_light(hit.normal), light.to_light(wo));
     const wavelet::RotatedReflectance reflectance =
         m_scene.material_of(m_object).reflectance(point);
-    const wavelet::ProductTree& product = m_follows ? m_product.follow(reflectance, m_options)
-                                                    : m_product.build(reflectance, m_options);
+    const wavelet::ProductTree& product = m_follows
+                                              ? m_product.build_or_reuse(reflectance, m_options)
+                                              : m_product.build(reflectance, m_options);
     m_follows = true;
     Float4 sum = {};
     for (const wavelet::ProductNode& node : product.nodes())
@@ -87,12 +88,10 @@ public:
 
 private:
   Float4 seen_share(const Hit& hit, const wavelet::ProductLeaf& leaf) const {
-    const Float4 value = leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
+    const Float4 value = leaf.light * leaf.reflectance * leaf.square.area();
     if (!(wavelet::lane_sum(value * wavelet::luminance_lanes) > 0))
       return Float4{};
-    const float side = power_of_two(-leaf.level);
-    const Vec3 w = m_scene.light().to_world(wavelet::square_to_sphere(Vec2(
-        (static_cast<float>(leaf.x) + 0.5F) * side, (static_cast<float>(leaf.y) + 0.5F) * side)));
+    const Vec3 w = m_scene.light().to_world(wavelet::square_to_sphere(leaf.square.centre()));
     return m_others.occluded(leave(hit, w)) ? Float4{} : value;
   }
 

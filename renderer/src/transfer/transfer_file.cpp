@@ -6,8 +6,12 @@
 
 namespace haarlight::renderer {
 
+bool is_transfer(const wavelet::SetInfo& info) {
+  return info.kind == wavelet::SetKind::Transfer || info.provenance.get("transfer") == "1";
+}
+
 Transfer::Transfer(const std::string& path) : m_set(wavelet::open_tree_set(path)) {
-  if (varying_text().empty() || provenance().get("transfer") != "1")
+  if (varying_text().empty() || !is_transfer(m_set.info()))
     throw_input_error(path, "holds no transfer; haarrelight build makes files that do");
   m_trees.reserve(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
   for (int y = 0; y < height(); ++y)

@@ -10,7 +10,8 @@ namespace {
 /// Shapes that may be in the way of light to themselves above the horizon.
 bool hides_itself(const Shape& shape) { return std::holds_alternative<Torus>(shape); }
 
-wavelet::ProjectionTerm light_term(const LoadedScene& scene, const std::vector<float>& variances) {
+wavelet::ProjectionFactor light_term(const LoadedScene& scene,
+                                     const std::vector<float>& variances) {
   return {scene.light().tree(), variances.data()};
 }
 

@@ -5,7 +5,7 @@
 namespace haarlight::renderer::detail {
 
 using wavelet::RegionPart;
-using wavelet::SquarePlace;
+using wavelet::Square;
 
 Cap Cap::around_ball(const Eigen::Vector3d& centre, double radius) {
   const double distance = centre.norm();
@@ -25,14 +25,14 @@ Cap Cap::around_ball(const Eigen::Vector3d& centre, double radius) {
   return cap;
 }
 
-RegionPart CapRegion::classify(const SquarePlace& square) const {
+RegionPart CapRegion::classify(const Square& square) const {
   const RegionPart part = m_cap.classify(wavelet::square_cap(square));
   if (part == RegionPart::Partial)
     return part;
   return (part == RegionPart::Inside) != m_reverse ? RegionPart::Inside : RegionPart::Outside;
 }
 
-float CapRegion::coverage(const SquarePlace& square) const {
+float CapRegion::coverage(const Square& square) const {
   const Vec3& a = m_cap.axis;
   const float share = wavelet::positive_share_of(square, [&](Float4 x, Float4 y, Float4 z) {
     const Float4 dx = x - a.x();

@@ -39,8 +39,8 @@ class CapRegion final : public wavelet::Region {
 public:
   CapRegion(const Cap& cap, bool reverse) : m_cap(cap), m_reverse(reverse) {}
 
-  wavelet::RegionPart classify(const wavelet::SquarePlace& square) const override;
-  float coverage(const wavelet::SquarePlace& square) const override;
+  wavelet::RegionPart classify(const wavelet::Square& square) const override;
+  float coverage(const wavelet::Square& square) const override;
 
 private:
   Cap m_cap;

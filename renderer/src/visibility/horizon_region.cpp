@@ -5,7 +5,7 @@
 namespace haarlight::renderer::detail {
 
 using wavelet::RegionPart;
-using wavelet::SquarePlace;
+using wavelet::Square;
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr int smooth_level = 6;
 constexpr int horizon_refinements = 2;
 
 /// max(0, n·ω) at the 2 × 2 Gauss points, averaged.
-float gauss_cosine(const Vec3& n, const SquarePlace& square) {
+float gauss_cosine(const Vec3& n, const Square& square) {
   constexpr float low = 0.21132487F;
   constexpr float high = 1 - low;
   const float side = power_of_two(-square.level);
@@ -30,17 +30,17 @@ float gauss_cosine(const Vec3& n, const SquarePlace& square) {
 
 } // namespace
 
-RegionPart HorizonRegion::classify(const SquarePlace& square) const {
+RegionPart HorizonRegion::classify(const Square& square) const {
   const RegionPart part = m_flat.classify(square);
   return part == RegionPart::Inside && (m_cosine || m_own) ? RegionPart::Partial : part;
 }
 
-float HorizonRegion::coverage(const SquarePlace& square) const {
+float HorizonRegion::coverage(const Square& square) const {
   const float shown = m_cosine ? average_cosine(square, 0) : m_flat.coverage(square);
   return m_own && shown > 0 ? shown * unshadowed_share(square) : shown;
 }
 
-float HorizonRegion::average_cosine(const SquarePlace& square, int refinements) const {
+float HorizonRegion::average_cosine(const Square& square, int refinements) const {
   const RegionPart part = m_flat.classify(square);
   if (part == RegionPart::Outside)
     return 0;
@@ -55,7 +55,7 @@ float HorizonRegion::average_cosine(const SquarePlace& square, int refinements) 
 }
 
 /// Of what lies above the horizon: more rays where the first few disagree.
-float HorizonRegion::unshadowed_share(const SquarePlace& square) const {
+float HorizonRegion::unshadowed_share(const Square& square) const {
   constexpr std::size_t few = 4;
   float all = 0;
   float missed = 0;

@@ -19,12 +19,12 @@ public:
       : m_horizon(Cap::half_space(normal)), m_flat(m_horizon, false), m_own(own), m_cosine(cosine) {
   }
 
-  wavelet::RegionPart classify(const wavelet::SquarePlace& square) const override;
-  float coverage(const wavelet::SquarePlace& square) const override;
+  wavelet::RegionPart classify(const wavelet::Square& square) const override;
+  float coverage(const wavelet::Square& square) const override;
 
 private:
-  float average_cosine(const wavelet::SquarePlace& square, int refinements) const;
-  float unshadowed_share(const wavelet::SquarePlace& square) const;
+  float average_cosine(const wavelet::Square& square, int refinements) const;
+  float unshadowed_share(const wavelet::Square& square) const;
 
   Cap m_horizon;
   CapRegion m_flat;

@@ -10,8 +10,8 @@
 namespace haarlight::renderer::detail {
 
 using wavelet::RegionPart;
+using wavelet::Square;
 using wavelet::SquareCap;
-using wavelet::SquarePlace;
 using wavelet::SquareView;
 
 namespace {
@@ -28,7 +28,7 @@ constexpr std::size_t batches = 2;
 constexpr unsigned all_points = 0xFF;
 using Points = std::array<Lanes3, batches>;
 
-Points points_of(const SquarePlace& square) {
+Points points_of(const Square& square) {
   constexpr Float4 columns[batches] = {{0.5F, 1.5F, 2.5F, 3.5F}, {4.5F, 5.5F, 6.5F, 7.5F}};
   constexpr Float4 rows[batches] = {{1.5F, 4.5F, 7.5F, 2.5F}, {5.5F, 0.5F, 3.5F, 6.5F}};
   const float step = power_of_two(-square.level - 3);
@@ -75,19 +75,19 @@ unsigned points_behind(const Points& points, const Obstacle& obstacle) {
 
 /// One square, and those of its points above the horizon that nothing hides so far. The points are
 /// worked out only once something may be in their way.
-class Glance {
+class VisibilityQuery {
 public:
-  Glance(const SquarePlace& square, const Vec3& normal)
+  VisibilityQuery(const Square& square, const Vec3& normal)
       : m_square(square), m_cap(wavelet::square_cap(square)), m_normal(normal) {}
 
   /// Takes away the points behind an obstacle. @return where the square surely lies of what that
   /// hides; Partial if it may be across an edge
-  RegionPart look_past(const Obstacle& obstacle) {
+  RegionPart add_obstacle(const Obstacle& obstacle) {
     const RegionPart part = obstacle.bounds.classify(m_cap);
     if (part == RegionPart::Outside)
       return part;
     if (obstacle.solid != nullptr)
-      return look_past_solid(obstacle);
+      return add_obstacle_solid(obstacle);
     if (part == RegionPart::Partial)
       hide(points_beyond(points(), obstacle.bounds.axis, obstacle.bounds.cosine));
     return part;
@@ -102,7 +102,7 @@ public:
   }
 
 private:
-  RegionPart look_past_solid(const Obstacle& obstacle) {
+  RegionPart add_obstacle_solid(const Obstacle& obstacle) {
     const RegionPart part = obstacle.outline.classify(m_cap);
     if (part == RegionPart::Outside)
       return part;
@@ -123,7 +123,7 @@ private:
     return *m_points;
   }
 
-  SquarePlace m_square;
+  Square m_square;
   SquareCap m_cap;
   Vec3 m_normal;
   std::optional<Points> m_points;
@@ -136,7 +136,7 @@ private:
 SeenSquares::SeenSquares(const ShapeSet& shapes, const Light& light)
     : m_shapes(shapes), m_light(light), m_visibility(shapes, light) {}
 
-void SeenSquares::turn_to(const Hit& from) {
+void SeenSquares::set_shading_point(const Hit& from) {
   m_obstacles.clear();
   m_normal = m_light.to_light(from.normal);
   const Eigen::Vector3d origin = leave(from, from.normal).origin.cast<double>();
@@ -169,19 +169,19 @@ void SeenSquares::add(const Solid& solid, const Eigen::Vector3d& origin) {
         solid.to_object.vector(m_light.to_world(Vec3::Unit(i)).cast<double>()).cast<float>();
 }
 
-void SeenSquares::look(std::span<const SquarePlace> squares, std::span<SquareView> views) {
+void SeenSquares::query_visibility(std::span<const Square> squares, std::span<SquareView> views) {
   for (std::size_t i = 0; i < squares.size(); ++i)
     views[i] = view_of(squares[i], views[i].occluders);
 }
 
-SquareView SeenSquares::view_of(const SquarePlace& square, std::uint64_t occluders) const {
-  Glance glance(square, m_normal);
+SquareView SeenSquares::view_of(const Square& square, std::uint64_t occluders) const {
+  VisibilityQuery query(square, m_normal);
   std::uint64_t in_part = 0;
   for (std::uint64_t rest = occluders; rest != 0; rest &= rest - 1) {
     const auto bit = static_cast<std::size_t>(std::countr_zero(rest));
     const std::size_t end = bit == last_bit ? m_obstacles.size() : bit + 1;
     for (std::size_t i = bit; i < std::min(end, m_obstacles.size()); ++i)
-      switch (glance.look_past(m_obstacles[i])) {
+      switch (query.add_obstacle(m_obstacles[i])) {
       case RegionPart::Inside:
         return {0, 0};
       case RegionPart::Partial:
@@ -191,7 +191,7 @@ SquareView SeenSquares::view_of(const SquarePlace& square, std::uint64_t occlude
         break;
       }
   }
-  return {glance.seen(), in_part};
+  return {query.seen(), in_part};
 }
 
 } // namespace haarlight::renderer::detail

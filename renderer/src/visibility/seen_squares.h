@@ -7,7 +7,7 @@
 
 #include <renderer/visibility/visibility.h>
 
-#include <wavelet/product/square_visibility.h>
+#include <wavelet/product/adaptive_product.h>
 
 #include <vector>
 
@@ -31,14 +31,14 @@ public:
   SeenSquares(const ShapeSet& shapes, const Light& light);
 
   /// @param from its normal points to the side that is seen
-  void turn_to(const Hit& from);
+  void set_shading_point(const Hit& from);
 
-  void look(std::span<const wavelet::SquarePlace> squares,
-            std::span<wavelet::SquareView> views) override;
+  void query_visibility(std::span<const wavelet::Square> squares,
+                        std::span<wavelet::SquareView> views) override;
 
 private:
   void add(const Solid& solid, const Eigen::Vector3d& origin);
-  wavelet::SquareView view_of(const wavelet::SquarePlace& square, std::uint64_t occluders) const;
+  wavelet::SquareView view_of(const wavelet::Square& square, std::uint64_t occluders) const;
 
   const ShapeSet& m_shapes;
   const Light& m_light;

@@ -9,8 +9,8 @@
 namespace haarlight::renderer::detail {
 
 using wavelet::RegionPart;
+using wavelet::Square;
 using wavelet::SquareCap;
-using wavelet::SquarePlace;
 
 namespace {
 
@@ -34,7 +34,7 @@ double stretch_bound(const Eigen::Matrix3d& linear) {
 
 } // namespace
 
-Vec2 net_point(const SquarePlace& square, std::size_t index) {
+Vec2 net_point(const Square& square, std::size_t index) {
   static constexpr std::array<std::uint8_t, net_size> columns = {0, 8, 4, 12, 2, 10, 6, 14,
                                                                  1, 9, 5, 13, 3, 11, 7, 15};
   static constexpr std::array<std::uint8_t, net_size> rows = {0,  8, 12, 4,  10, 2,  6, 14,
@@ -136,14 +136,14 @@ bool SolidRays::all_meet(const SquareCap& cap) const {
   });
 }
 
-RegionPart SolidRegion::classify(const SquarePlace& square) const {
+RegionPart SolidRegion::classify(const Square& square) const {
   const SquareCap cap = wavelet::square_cap(square);
   if (m_rays.all_miss(cap))
     return RegionPart::Inside;
   return m_rays.all_meet(cap) ? RegionPart::Outside : RegionPart::Partial;
 }
 
-float SolidRegion::coverage(const SquarePlace& square) const {
+float SolidRegion::coverage(const Square& square) const {
   int missed = 0;
   for (std::size_t i = 0; i < net_size; ++i)
     missed += m_rays.meet(wavelet::square_to_sphere(net_point(square, i))) ? 0 : 1;

@@ -16,7 +16,7 @@ namespace haarlight::renderer::detail {
 
 /// Points of a square that rays sample it by: a (0, 2)-net of 16 (Sobol'), as are its first 4.
 inline constexpr std::size_t net_size = 16;
-Vec2 net_point(const wavelet::SquarePlace& square, std::size_t index);
+Vec2 net_point(const wavelet::Square& square, std::size_t index);
 
 /// Rays from one point against one shape; directions are the light's.
 class SolidRays {
@@ -53,8 +53,8 @@ public:
   SolidRegion(const Solid& solid, const Eigen::Vector3d& origin, const Light& light)
       : m_rays(solid, origin, light) {}
 
-  wavelet::RegionPart classify(const wavelet::SquarePlace& square) const override;
-  float coverage(const wavelet::SquarePlace& square) const override;
+  wavelet::RegionPart classify(const wavelet::Square& square) const override;
+  float coverage(const wavelet::Square& square) const override;
 
 private:
   SolidRays m_rays;

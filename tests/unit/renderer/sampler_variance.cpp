@@ -1,7 +1,7 @@
 // Whether the variance that a pixel reports of itself is the spread of its estimates over seeds.
 
-#include "film/pixel_sums.h"
 #include "crowded_scene.h"
+#include "film/pixel_sums.h"
 
 #include <catch2/catch.hpp>
 

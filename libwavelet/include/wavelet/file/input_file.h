@@ -87,4 +87,7 @@ std::string hash_text(std::span<const std::byte> bytes);
 /// input and other open descriptors have the names "standard input" and "pipe".
 std::string base_name(const std::string& path);
 
+/// hash_text() of all bytes of a file, read in pieces. @throws Error(Input) if it cannot be read
+std::string file_hash(const std::string& path);
+
 } // namespace haarlight

@@ -2,8 +2,8 @@
 // What a square of the map covers on the sphere: a circle around it, and the share of it on which a
 // smooth function is positive.
 
-#include <wavelet/product/factor.h>
 #include <wavelet/square/sphere_map.h>
+#include <wavelet/square/square.h>
 
 #include <array>
 
@@ -16,7 +16,7 @@ struct SquareCap {
   float sine = 0;              ///< … which is at most π/2 from level 1 on
 };
 
-SquareCap square_cap(const SquarePlace& square);
+SquareCap square_cap(const Square& square);
 
 /// Values of a function at 3 × 3 points of a square: its corners, its edges' middles, its centre;
 /// index 3 · row + column.
@@ -34,13 +34,13 @@ float positive_share(const SquareValues& values);
 struct SquareDirections {
   std::array<Float4, 3> x, y, z;
 };
-SquareDirections square_directions(const SquarePlace& square);
+SquareDirections square_directions(const Square& square);
 
 /// The share of a square on which a smooth function of direction is positive, which by equal area
 /// is the share of the solid angle: error below 1e-3 of a square, and mostly far below it.
 /// @param value Float4(Float4 x, Float4 y, Float4 z) of four unit directions
 template <class Value>
-float positive_share_of(const SquarePlace& square, const Value& value) {
+float positive_share_of(const Square& square, const Value& value) {
   constexpr std::int32_t coarsest = 5; ///< coarser ones may bend or hold a seam of the map
   constexpr std::int32_t finest = 14;
   const SquareDirections at = square_directions(square);

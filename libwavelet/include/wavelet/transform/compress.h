@@ -15,8 +15,8 @@ struct CompressOptions {
   ThresholdOptions threshold;
   CoefficientType coefficients = CoefficientType::Half;
   bool luminance = false; ///< store one channel, the luminance, in place of RGB
-  bool quantize = false;  ///< round what is kept, see <wavelet/transform/quantize.h>
-  bool packed = false; ///< compress_set(): write the packed form, see <wavelet/file/packed_set.h>
+  bool quantize = false;  ///< round what is kept, see <wavelet/transform/threshold.h>
+  bool packed = false;    ///< compress_set(): write the packed form, see <wavelet/file/tree_set.h>
 };
 
 /// What compression did to a map or, summed, to a set.

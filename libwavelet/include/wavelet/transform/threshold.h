@@ -1,5 +1,5 @@
 #pragma once
-// Which coefficients of a transformed map to keep.
+// Which coefficients of a transformed map to keep, and their rounding for packed files.
 
 #include <wavelet/tree/map_set.h>
 
@@ -45,5 +45,20 @@ struct Kept {
 
 /// Sets dropped coefficients of a map transformed by haar_forward() to zero, all channels at once.
 Kept apply_threshold(Map& transformed, const ThresholdOptions& options);
+
+struct Quantized {
+  std::size_t coefficients = 0; ///< RGB triples left, the mean not counted
+  float scale = 0; ///< all differences are halves times it; 0 where any fitting scale serves
+};
+
+/// Thresholds a map transformed by haar_forward() and rounds what is kept.
+///
+/// Criterion::L2 with a tolerance: one uniform step for all L2-normalised coefficients, the largest
+/// that keeps the relative L2 error, dropping and rounding together, within the tolerance; a triple
+/// is dropped if its norm is below 0.65 steps, and red and blue are rounded in steps of twice the
+/// size from green.
+/// Otherwise: apply_threshold(), then rounding by at most what the criterion lets be dropped at
+/// that place, in steps that are powers of two.
+Quantized apply_quantization(Map& transformed, const ThresholdOptions& options);
 
 } // namespace haarlight::wavelet

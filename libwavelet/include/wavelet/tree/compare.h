@@ -6,8 +6,11 @@
 // Everything is in the unit of the maps' pixels: a BRDF set whose pixels hold f_r·cos is compared
 // with the cosine.
 
+#include <wavelet/file/tree_set.h>
+#include <wavelet/square/symmetry.h>
 #include <wavelet/tree/map_set.h>
 
+#include <memory>
 #include <vector>
 
 namespace haarlight::wavelet {
@@ -72,5 +75,28 @@ struct SetDifference {
 /// @param a,b sets of equal size, columns and rows
 /// @throws whatever the sources throw
 SetDifference compare_sets(const MapSource& a, const MapSource& b, const Progress& progress = {});
+
+// Views that make two sets comparable: sets of maps in another form. A view makes a map when asked
+// for it and shares ownership of its source.
+
+using SharedMaps = std::shared_ptr<const MapSource>;
+
+/// The map that stored pixels stand for: pixel p is the stored one at symmetry.to_stored(p).
+Map turned(const Map& stored, const SquareSymmetry& symmetry);
+
+/// The maps of a .haar file, reconstructed at their finest level.
+SharedMaps tree_maps(std::shared_ptr<const TreeSet> trees);
+
+/// Averages down to `size` pixels a side. @param size a power of two, at most the set's
+SharedMaps shrunk(SharedMaps maps, int size);
+
+/// All rolls of a folded set, one row each, in the order of <wavelet/square/symmetry.h>.
+SharedMaps unfolded(SharedMaps maps);
+
+/// One map, as a set of its own. Its info keeps the kind; rolls and fold are those of one map.
+SharedMaps one_map(SharedMaps maps, int column, int row);
+
+/// Luminance in all three channels.
+SharedMaps in_luminance(SharedMaps maps);
 
 } // namespace haarlight::wavelet

@@ -57,7 +57,7 @@ public:
   static void place(Places& places, int count);
 
   /// lookup() at a place in two entries: (1 − blend) · first + blend · second.
-  Float4 lookup(int entry0, int entry1, float blend, const Places& places, std::size_t i) const;
+  Float4 lookup(int first, int second, float blend, const Places& places, std::size_t i) const;
 
 private:
   static constexpr int tile_bits = 3;
@@ -144,13 +144,13 @@ inline void Pyramid::place(Places& p, int count) {
   }
 }
 
-inline Float4 Pyramid::lookup(int entry0, int entry1, float blend, const Places& p,
+inline Float4 Pyramid::lookup(int first, int second, float blend, const Places& p,
                               std::size_t i) const {
-  const std::uint32_t page0 = pages(entry0)[p.page[i]];
-  const std::uint32_t page1 = pages(entry1)[p.page[i]];
+  const std::uint32_t page0 = pages(first)[p.page[i]];
+  const std::uint32_t page1 = pages(second)[p.page[i]];
   if (((page0 | page1) & absent) != 0) {
-    const Float4 near = lookup_coarser(pages(entry0), p, i);
-    return near + (lookup_coarser(pages(entry1), p, i) - near) * blend;
+    const Float4 near = lookup_coarser(pages(first), p, i);
+    return near + (lookup_coarser(pages(second), p, i) - near) * blend;
   }
   const std::uint16_t* near = texels(page0, p.texel[i]);
   const std::uint16_t* far = texels(page1, p.texel[i]);

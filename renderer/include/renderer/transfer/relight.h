@@ -5,7 +5,7 @@
 #include <renderer/film/film.h>
 #include <renderer/transfer/transfer.h>
 
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <memory>
 #include <span>
@@ -13,6 +13,9 @@
 #include <vector>
 
 namespace haarlight::renderer {
+
+/// Whether a set is a transfer: by its kind or, in files made before version 0.2.0, by its provenance.
+bool is_transfer(const wavelet::SetInfo& info);
 
 /// A transfer file in memory, of either form.
 class Transfer {

@@ -75,11 +75,11 @@ private:
   const VisibilityTrees& m_visibility;
   Variation m_variation;
   wavelet::ProjectionOptions m_options;
-  wavelet::ProjectionTerm m_light;
-  wavelet::Projection m_projection;
+  wavelet::ProjectionFactor m_light;
+  wavelet::ProductProjector m_projection;
   wavelet::RegionTreeBuilder m_regions;
   std::vector<wavelet::Tree> m_visibilities; ///< of which as many are in use as there are terms
-  std::vector<wavelet::ProjectionTerm> m_terms;
+  std::vector<wavelet::ProjectionFactor> m_terms;
   wavelet::ProjectionReport m_report;
 };
 
