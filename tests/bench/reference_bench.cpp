@@ -9,9 +9,10 @@
 // trees are synthetic. Ends with each way's time relative to the dense one's, best of all
 // repetitions: ask for --benchmark_repetitions=N --benchmark_enable_random_interleaving=true.
 
+#include "reference_basis.h"
+
 #include <wavelet/file/tree_set.h>
 #include <wavelet/product/synchronous_product.h>
-#include <wavelet/reference/reference.h>
 #include <wavelet/square/sphere_map.h>
 #include <wavelet/transform/compress.h>
 

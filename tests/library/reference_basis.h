@@ -1,16 +1,114 @@
 #pragma once
-// Integrals of products of Haar basis functions, and sums over them: the theorems of the published
-// method, slow and independent of the library's products.
+// The published method apart from its products: coefficients of images and trees, and the theorems
+// on integrals of products of Haar basis functions; slow and independent of the library's products.
 
 #include <wavelet/reference/reference.h>
+#include <wavelet/transform/transform.h>
+#include <wavelet/tree/tree.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <span>
 #include <vector>
 
 namespace haarlight::wavelet::reference {
+
+/// The scalar taken from a colour.
+enum class Channel { Red, Green, Blue, Luminance };
+
+inline std::size_t pixel_count(int size) {
+  return static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+}
+
+/// Calls `visit(square)` for every square that may have wavelets in a function of so many levels.
+template <class Visit>
+void for_each_wavelet_square(int levels, Visit visit) {
+  for (std::int32_t l = 0; l < levels; ++l)
+    for (std::uint32_t y = 0; y < (1U << l); ++y)
+      for (std::uint32_t x = 0; x < (1U << l); ++x)
+        visit(Square{l, x, y});
+}
+
+template <class T>
+void insert(CoefficientSet<T>& function, const Square& s,
+            const typename CoefficientSet<T>::Details& d) {
+  if (d[0] != 0 || d[1] != 0 || d[2] != 0)
+    function.details.emplace(s, d);
+}
+
+/// The scalar of a colour, in the precision asked for.
+template <class T>
+T scalar_of(Float4 c, Channel channel) {
+  if (channel != Channel::Luminance)
+    return static_cast<T>(c[static_cast<int>(channel)]);
+  T result = 0;
+  for (int i = 0; i < 3; ++i)
+    result += static_cast<T>(luminance_weights[i]) * static_cast<T>(c[i]);
+  return result;
+}
+
+template <class T>
+void insert_nodes(const TreeView& tree, Channel channel, std::uint32_t node, const Square& s,
+                  CoefficientSet<T>& function) {
+  if (node == no_node)
+    return;
+  const Details d = tree.details(node);
+  const T scale = std::ldexp(T(1), -s.level);
+  insert(function, s,
+         {scale * scalar_of<T>(d.d1, channel), scale * scalar_of<T>(d.d2, channel),
+          scale * scalar_of<T>(d.d3, channel)});
+  for (unsigned q = 0; q < 4; ++q)
+    insert_nodes(tree, channel, tree.child(node, q), s.quadrant(q), function);
+}
+
+/// The coefficients of an image, by transform (section 5.2).
+/// @param image size × size averages over pixels, row 0 first
+/// @param size  a power of two
+template <class T>
+CoefficientSet<T> coefficient_set(std::span<const T> image, int size) {
+  assert(image.size() == pixel_count(size));
+  std::vector<T> differences(image.begin(), image.end());
+  haar_forward(differences.data(), size, 1);
+  CoefficientSet<T> result;
+  result.levels = std::countr_zero(static_cast<unsigned>(size));
+  result.root = differences[0];
+  for_each_wavelet_square(result.levels, [&](const Square& s) {
+    typename CoefficientSet<T>::Details d = {};
+    for (int m = 1; m <= 3; ++m)
+      d[static_cast<std::size_t>(m - 1)] =
+          std::ldexp(differences[coefficient_index(size, s, m)], -s.level);
+    insert(result, s, d);
+  });
+  return result;
+}
+
+/// The coefficients of a stored tree: F^m_s = 2^-l d_m for the tree's differences d_m.
+template <class T>
+CoefficientSet<T> coefficient_set(const TreeView& tree, Channel channel) {
+  CoefficientSet<T> result;
+  result.levels = tree.levels;
+  result.root = scalar_of<T>(to_lanes(tree.mean), channel);
+  insert_nodes(tree, channel, tree.root(), Square{}, result);
+  return result;
+}
+
+/// The function as 2^level × 2^level averages over pixels, row 0 first, by inverse transform.
+template <class T>
+std::vector<T> image_of(const CoefficientSet<T>& function, int level) {
+  assert(level >= 0 && level <= 13);
+  const int size = 1 << level;
+  std::vector<T> image(pixel_count(size));
+  image[0] = function.root;
+  for (const auto& [s, d] : function.details)
+    if (s.level < level)
+      for (int m = 1; m <= 3; ++m)
+        image[coefficient_index(size, s, m)] =
+            std::ldexp(d[static_cast<std::size_t>(m - 1)], s.level);
+  haar_inverse(image.data(), size, 1);
+  return image;
+}
 
 /// Sign over all of `inner` of the function of type m on `outer`. @param inner strictly finer than
 /// `outer`, and within it
@@ -149,6 +247,19 @@ private:
 template <class T>
 double integral_by_theorem(std::span<const CoefficientSet<T>> functions) {
   return TupleSum<T>(functions).sum(1);
+}
+
+/// ⟨F, G⟩ = ∫∫ F·G = Σ_i F_i G_i, the basis being orthonormal. With T from multiply() of the fixed
+/// functions this is the integral for one varying function (equation 14).
+template <class T>
+T inner_product(const CoefficientSet<T>& f, const CoefficientSet<T>& g) {
+  const bool f_smaller = f.details.size() < g.details.size();
+  const CoefficientSet<T>& small = f_smaller ? f : g;
+  const CoefficientSet<T>& large = f_smaller ? g : f;
+  T result = f.root * g.root;
+  for (const auto& [s, d] : small.details)
+    result += d[0] * large.at(s, 1) + d[1] * large.at(s, 2) + d[2] * large.at(s, 3);
+  return result;
 }
 
 /// ∫∫ of the product of n functions, factored (equation 16): the inner product of the product of

@@ -128,7 +128,7 @@ bool nearly_linear(const SquareValues& v) {
   return *low > bend || *high < -bend; // one sign all over, whatever its shape
 }
 
-float positive_share(const SquareValues& given) {
+float positive_fraction(const SquareValues& given) {
   const bool along_rows = std::abs(given[5] - given[3]) >= std::abs(given[7] - given[1]);
   const SquareValues v = along_rows ? given : transposed(given);
   std::array<Quadratic, 3> columns;

@@ -75,12 +75,6 @@ double rank_norm(const float* c, Criterion criterion) {
   return std::sqrt(weighted_square(c));
 }
 
-constexpr std::array<std::pair<const char*, Criterion>, 4> names = {
-    {{"variance", Criterion::Variance},
-     {"l2", Criterion::L2},
-     {"linf", Criterion::Linf},
-     {"count", Criterion::Count}}};
-
 struct Ranked {
   double rank;
   float* coefficient;
@@ -159,15 +153,9 @@ double linf_limit(const Map& transformed, double tolerance) {
 
 } // namespace
 
-std::optional<Criterion> criterion_from_name(const std::string& name) {
-  for (const auto& [text, criterion] : names)
-    if (name == text)
-      return criterion;
-  return std::nullopt;
-}
-
 std::string criterion_name(Criterion criterion) {
-  return names[static_cast<std::size_t>(criterion)].first;
+  constexpr std::array names = {"variance", "l2", "linf", "count"};
+  return names[static_cast<std::size_t>(criterion)];
 }
 
 double default_tolerance(const SetInfo& info, Criterion criterion) {

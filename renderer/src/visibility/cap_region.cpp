@@ -34,7 +34,7 @@ RegionPart CapRegion::classify(const Square& square) const {
 
 float CapRegion::coverage(const Square& square) const {
   const Vec3& a = m_cap.axis;
-  const float share = wavelet::positive_share_of(square, [&](Float4 x, Float4 y, Float4 z) {
+  const float share = wavelet::positive_fraction_of(square, [&](Float4 x, Float4 y, Float4 z) {
     const Float4 dx = x - a.x();
     const Float4 dy = y - a.y();
     const Float4 dz = z - a.z();

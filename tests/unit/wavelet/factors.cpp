@@ -1,11 +1,11 @@
 #include "product_of.h"
 #include "random_map.h"
+#include "reference_basis.h"
 #include "tree_views.h"
 
 #include <wavelet/product/multiply.h>
 #include <wavelet/product/projection.h>
 #include <wavelet/product/synchronous_product.h>
-#include <wavelet/reference/reference.h>
 #include <wavelet/square/sphere_map.h>
 #include <wavelet/transform/compress.h>
 

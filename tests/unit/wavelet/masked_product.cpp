@@ -27,7 +27,7 @@ public:
     return share == 0 ? RegionPart::Outside : share == 1 ? RegionPart::Inside : RegionPart::Partial;
   }
   float coverage(const Square& square) const override {
-    return positive_share_of(square, [&](Float4 x, Float4 y, Float4 z) {
+    return positive_fraction_of(square, [&](Float4 x, Float4 y, Float4 z) {
       return x * m_axis.x() + y * m_axis.y() + z * m_axis.z() - m_cosine;
     });
   }

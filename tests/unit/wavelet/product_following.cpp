@@ -107,7 +107,7 @@ public:
   bool hides(const Vec3& w) const { return m_side.dot(w) > 0; }
   void query_visibility(std::span<const Square> squares, std::span<SquareView> views) override {
     for (std::size_t i = 0; i < squares.size(); ++i) {
-      const float seen = positive_share_of(squares[i], [&](Float4 x, Float4 y, Float4 z) {
+      const float seen = positive_fraction_of(squares[i], [&](Float4 x, Float4 y, Float4 z) {
         return -(m_side.x() * x + m_side.y() * y + m_side.z() * z);
       });
       views[i] = {seen, views[i].occluders * (seen > 0 && seen < 1 ? 1 : 0)};

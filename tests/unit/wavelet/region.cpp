@@ -30,7 +30,7 @@ public:
   }
 
   float coverage(const Square& square) const override {
-    return positive_share_of(square, [&](Float4 x, Float4 y, Float4 z) {
+    return positive_fraction_of(square, [&](Float4 x, Float4 y, Float4 z) {
       return x * m_axis.x() + y * m_axis.y() + z * m_axis.z() - m_cosine;
     });
   }

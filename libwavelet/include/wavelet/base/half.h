@@ -11,8 +11,7 @@
 
 namespace haarlight::wavelet {
 
-/// Four finite halves as floats, but for a factor of half_unit; exact. Lanes beyond what is wanted
-/// may hold anything finite.
+/// Four finite halves as floats divided by half_unit; exact. Unused lanes may hold anything finite.
 inline Float4 small_floats(const void* four_halves) {
   using Short8 = std::uint16_t __attribute__((vector_size(16)));
   using Long2 = std::uint64_t __attribute__((vector_size(16)));
@@ -25,10 +24,10 @@ inline Float4 small_floats(const void* four_halves) {
   return std::bit_cast<Float4>((upper >> 3) & static_cast<std::int32_t>(0x8fffffffU));
 }
 
-/// How far the biases of the two formats' exponents lie apart.
+/// 2 to the difference of the exponent biases of the two formats.
 inline constexpr float half_unit = 0x1p112F;
 
-/// Four finite halves as floats, exact; lanes beyond what is wanted may hold anything finite.
+/// Four finite halves as floats, exact; unused lanes may hold anything finite.
 inline Float4 halves_to_floats(const void* four_halves) {
   return small_floats(four_halves) * half_unit;
 }

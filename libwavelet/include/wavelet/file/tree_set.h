@@ -29,13 +29,13 @@ enum class Check {
   WhenUsed    ///< a tree is read and checked when it is first asked for
 };
 
-/// A .haar file in its mapped form. Trees are used as they lie in a private copy of the file, so
-/// that nothing that happens to the file afterwards changes them.
+/// A .haar file in its mapped form. Trees are used in place in a private copy of the file, so
+/// that later changes to the file have no effect.
 class TreeSet {
 public:
   /// Reads the file and checks it: checksum and structure of a tree in one go.
   /// @throws Error(Input) naming the first broken rule of FORMAT.md and its byte offset; for a
-  ///         packed file, what unpacks it
+  ///         packed file, the command that unpacks it
   explicit TreeSet(const std::string& path, Check check = Check::Everything);
   explicit TreeSet(InputFile file, Check check = Check::Everything);
 

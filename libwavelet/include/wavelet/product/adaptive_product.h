@@ -30,7 +30,7 @@ struct AdaptiveOptions {
   float reuse_variance_bound = 0.01F;
 };
 
-/// What is known of the visibility of one square.
+/// The visibility of one square.
 struct SquareView {
   float seen = 1; ///< visible fraction in [0, 1], estimated; what lies below the horizon does not
                   ///< count

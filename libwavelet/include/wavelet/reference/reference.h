@@ -4,17 +4,16 @@
 // Meant to be read, and as the reference of faster code. The toolkit itself multiplies with
 // <wavelet/product/synchronous_product.h>.
 //
-//     equation 17             CoefficientSet, coefficient_set(), image_of()
+//     equation 17             CoefficientSet
 //     Table 1, PSUM           ParentSums
 //     Table 2, CSUM           ChildrenSums
 //     Table 3, PRODUCT        Product::coefficient(), multiply()
 //     Table 4, OPPRODUCT      Product::average()
-//     equations 14 to 16      multiply() of many, inner_product()
+//     equation 15             multiply() of many
 //
 // All functions are scalar (one channel) and live on the unit square; `T` is float or double.
 
 #include <wavelet/square/square.h>
-#include <wavelet/tree/tree.h>
 
 #include <array>
 #include <cstddef>
@@ -64,23 +63,6 @@ struct CoefficientSet {
   /// F^m_s. @param m 1, 2 or 3
   T at(const Square& s, int m) const { return at(s)[static_cast<std::size_t>(m - 1)]; }
 };
-
-/// What of a colour is taken as the scalar.
-enum class Channel { Red, Green, Blue, Luminance };
-
-/// The coefficients of an image, by transform (section 5.2).
-/// @param image size × size averages over pixels, row 0 first
-/// @param size  a power of two
-template <class T>
-CoefficientSet<T> coefficient_set(std::span<const T> image, int size);
-
-/// The coefficients of a stored tree: F^m_s = 2^-l d_m for the tree's differences d_m.
-template <class T>
-CoefficientSet<T> coefficient_set(const TreeView& tree, Channel channel);
-
-/// The function as 2^level × 2^level averages over pixels, row 0 first, by inverse transform.
-template <class T>
-std::vector<T> image_of(const CoefficientSet<T>& function, int level);
 
 /// PSUM (Table 1, after Ng et al. 2004): the average F(s) of a function over a square,
 ///     PSUM(root) = F⁰_root,   PSUM(s) = PSUM(s') + 2^(l−1) Σ_m sign(m, qx, qy) F^m_s',
@@ -169,10 +151,5 @@ CoefficientSet<T> multiply(const CoefficientSet<T>& g, const CoefficientSet<T>& 
 /// @param functions at least one
 template <class T>
 CoefficientSet<T> multiply(std::span<const CoefficientSet<T>> functions);
-
-/// ⟨F, G⟩ = ∫∫ F·G = Σ_i F_i G_i, the basis being orthonormal. With T from multiply() of the fixed
-/// functions this is the integral for one varying function (equation 14).
-template <class T>
-T inner_product(const CoefficientSet<T>& f, const CoefficientSet<T>& g);
 
 } // namespace haarlight::wavelet::reference

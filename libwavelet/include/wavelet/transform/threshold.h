@@ -22,8 +22,6 @@ enum class Criterion {
   Count ///< |c|, keeping a given number
 };
 
-/// @throws nothing; an unknown name gives nothing
-std::optional<Criterion> criterion_from_name(const std::string& name);
 std::string criterion_name(Criterion criterion);
 
 struct ThresholdOptions {
@@ -34,7 +32,7 @@ struct ThresholdOptions {
             ///< in place of the tolerance; Criterion::Count needs it
 };
 
-/// The tolerance that serves when none is asked for. Variance: 0.0001 for a light's one world-frame
+/// The default tolerance. Variance: 0.0001 for a light's one world-frame
 /// map, whose every detail goes into every product, else 0.0005. L2: 0.01. Linf: 0.002.
 double default_tolerance(const SetInfo& info, Criterion criterion);
 
@@ -48,17 +46,17 @@ Kept apply_threshold(Map& transformed, const ThresholdOptions& options);
 
 struct Quantized {
   std::size_t coefficients = 0; ///< RGB triples left, the mean not counted
-  float scale = 0; ///< all differences are halves times it; 0 where any fitting scale serves
+  float scale = 0; ///< all differences are halves times it; 0 if any fitting scale can be used
 };
 
-/// Thresholds a map transformed by haar_forward() and rounds what is kept.
+/// Thresholds a map transformed by haar_forward() and rounds the coefficients kept.
 ///
 /// Criterion::L2 with a tolerance: one uniform step for all L2-normalised coefficients, the largest
 /// that keeps the relative L2 error, dropping and rounding together, within the tolerance; a triple
 /// is dropped if its norm is below 0.65 steps, and red and blue are rounded in steps of twice the
 /// size from green.
-/// Otherwise: apply_threshold(), then rounding by at most what the criterion lets be dropped at
-/// that place, in steps that are powers of two.
+/// Otherwise: apply_threshold(), then rounding by at most the largest coefficient that the
+/// criterion allows to be dropped at that place, in steps that are powers of two.
 Quantized apply_quantization(Map& transformed, const ThresholdOptions& options);
 
 } // namespace haarlight::wavelet

@@ -19,8 +19,8 @@
 namespace haarlight::wavelet {
 
 /// Transforms `channels` interleaved channels of a size × size image, row 0 first, in place, on the
-/// calling thread. The bits are those of lifting one 2 × 2 block after another, rows before columns, on
-/// every processor.
+/// calling thread. The bits are those of lifting one 2 × 2 block after another, rows before
+/// columns, on every processor.
 /// @param image    size² · channels elements; need not be aligned beyond its type
 /// @param size     a power of two
 /// @param channels at least 1

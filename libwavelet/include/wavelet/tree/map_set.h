@@ -86,8 +86,8 @@ public:
   /// @param row    0 ≤ row < info().rows
   virtual Map make(int column, int row) const = 0;
 
-  /// Integral of the same function over the sphere (dω), found from the source by other means than
-  /// its map; what conservation is reported against. Nothing if the source does not know.
+  /// Integral of the same function over the sphere (dω), integrated from the source rather
+  /// than from its map: the reference of conservation. Nothing if unknown.
   virtual std::optional<Rgb> integral(int /*column*/, int /*row*/) const { return std::nullopt; }
 };
 
@@ -105,7 +105,7 @@ class ConservationMeter {
 public:
   explicit ConservationMeter(const SetInfo& info);
   void add(int column, int row, const Map& map, const std::optional<Rgb>& truth);
-  /// Nothing if no truth was known.
+  /// Nothing if no reference integral was known.
   std::optional<Conservation> result() const;
 
 private:

@@ -20,7 +20,7 @@
 namespace haarlight::wavelet {
 
 /// Read-only and safe to share between threads once built. Values are rounded to 8 bits of
-/// mantissa: good for a sampling density, which is exact whatever it is, and for integrals to a few
+/// mantissa: sufficient for a sampling density, which need not be exact, and for integrals to a few
 /// 0.1 %.
 class Pyramid {
 public:
@@ -39,7 +39,7 @@ public:
   /// @param level 0 … levels(); @param u,v in [0, 1]
   Float4 lookup(int entry, int level, float u, float v) const;
 
-  /// Many points, each at a level of its own, and where they lie in the grids.
+  /// Points, each at its own level, and their positions in the grids.
   struct Places {
     static constexpr int capacity = 64;
     float u[capacity], v[capacity]; ///< in [0, 1]
@@ -53,7 +53,7 @@ public:
   /// @param level 0 …; beyond levels() it counts as levels()
   void set_level(Places& places, std::size_t i, int level) const;
 
-  /// Finds the first `count` places, of which levels and u, v are set.
+  /// Computes the positions of the first `count` points, whose levels and u, v are set.
   static void place(Places& places, int count);
 
   /// lookup() at a place in two entries: (1 − blend) · first + blend · second.
