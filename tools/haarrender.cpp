@@ -7,7 +7,7 @@
 #include <support/progress.h>
 
 #include <renderer/film/render.h>
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/memory.h>
 #include <wavelet/file/output_file.h>
 
@@ -53,7 +53,7 @@ void require_writable(const std::string& path) { const OutputFile trial(path); }
 
 /// Refuses contradictions and unwritable outputs before any work is done.
 void check(const tool::Tool& app, Options& options) {
-  if (const auto problem = problem_of(options.render.sampler, options.render.estimator))
+  if (const auto problem = validate(options.render.sampler, options.render.estimator))
     throw tool::UsageError(*problem);
   tool::check_integrator(app, options.integrator, options.render);
   if (options.seed > 0xFFFFFFFFU)

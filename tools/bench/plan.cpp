@@ -110,7 +110,7 @@ void check(Plan& plan) {
         plan.sampler_words.emplace_back(sampler.name);
   plan.samplers = chosen_samplers(plan.sampler_words);
   for (const SamplerKind kind : plan.samplers)
-    if (const auto problem = problem_of(kind, plan.render.estimator))
+    if (const auto problem = validate(kind, plan.render.estimator))
       throw tool::UsageError(*problem);
   if (plan.spp_words.empty())
     plan.spp_words = {"16,64,256"};

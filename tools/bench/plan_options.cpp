@@ -36,7 +36,7 @@ void declare_measurement(tool::Tool& app, Plan& plan) {
             "Samples per pixel of the reference, over 8 independent runs", 16, 1 << 20);
   std::vector<std::pair<std::string, SamplerKind>> kinds;
   for (const SamplerTraits& sampler : samplers())
-    if (sampler.claim == SamplerClaim::Unbiased && (sampler.needs & NeedsTables) == 0)
+    if (sampler.bias == Bias::Unbiased && (sampler.needs & NeedsTables) == 0)
       kinds.emplace_back(sampler.name, sampler.kind);
   app.choice(plan.reference_sampler, "--reference-sampler", kinds, "What the reference draws from");
 }

@@ -2,7 +2,7 @@
 
 #include <bench/plan.h>
 
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
 
 namespace haarlight::bench {
@@ -21,7 +21,7 @@ void add(const Shape& shape, SceneDescription& scene) {
 
 SceneDescription one_sphere() {
   SceneDescription scene;
-  scene.camera.projection = Projection::Orthographic;
+  scene.camera.projection = CameraProjection::Orthographic;
   scene.camera.from = Vec3(0, 0, 6);
   scene.camera.height = 2;
   add(Sphere(), scene);

@@ -4,7 +4,7 @@
 #include <support/output_size.h>
 #include <support/progress.h>
 
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <renderer/transfer/transfer.h>
 #include <wavelet/file/tree_set.h>
 

@@ -198,7 +198,7 @@ void InputFile::allocate() {
   void* address = ::mmap(nullptr, m_size, PROT_READ | PROT_WRITE,
                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (address == MAP_FAILED)
-    throw std::bad_alloc();
+    throw OutOfMemory("the contents of " + m_path, m_size);
   m_data = static_cast<std::byte*>(address);
 }
 

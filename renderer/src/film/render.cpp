@@ -13,28 +13,29 @@ constexpr std::array<std::pair<const char*, Estimator>, 3> estimator_names = {
      {"bidirectional", Estimator::Bidirectional},
      {"ratio", Estimator::Ratio}}};
 
-/// Light that comes straight from afar.
+/// Direct light.
 class DirectShader : public PixelShader {
 public:
   DirectShader(const LoadedScene& scene, const RenderOptions& options,
                const RenderFactories& factories)
       : m_estimator(options.estimator), m_light(scene, options, factories) {}
 
-  void forget() override { m_light.forget(); }
+  void reset() override { m_light.reset(); }
 
   void shade(const PixelHit& seen, const Pass& pass, PixelSums& sums) override {
     m_light.prepare(seen, m_cost);
     if (const auto unshadowed = m_light.unshadowed())
       sums.product = *unshadowed;
     m_light.sample(pass);
-    m_visible.resize(pass.count);
+    m_contributions.resize(pass.count);
     for (std::size_t i = 0; i < pass.count; ++i) {
       const bool visible =
           m_estimator == Estimator::Bidirectional ? add_direction(i, sums) : m_light.visible(i);
-      m_visible[i] = visible ? 1 : 0;
-      sums.add(m_light.weight(i), visible, m_light.pdf(i), m_light.technique(i));
+      const Rgb weight = m_light.weight(i);
+      sums.add(weight, visible, m_light.pdf(i));
+      m_contributions[i] = m_light.contribution(i, weight, visible);
     }
-    sums.add_shared(m_light.shared_variance(m_visible));
+    sums.add_variance(m_light.variance_of_sums(m_contributions), pass.count);
   }
 
 private:
@@ -47,7 +48,7 @@ private:
 
   Estimator m_estimator;
   LightSamples m_light;
-  std::vector<std::uint8_t> m_visible; ///< of the pass's samples
+  std::vector<Contribution> m_contributions; ///< of the pass's samples
 };
 
 SamplerOptions sampling_of(const RenderOptions& options) {
@@ -55,7 +56,7 @@ SamplerOptions sampling_of(const RenderOptions& options) {
   result.count = static_cast<std::size_t>(options.spp);
   if (!needs_unshadowed(options.estimator))
     return result;
-  result.product.reuse_variance_bound = 0; // each point has to have its own
+  result.product.reuse_variance_bound = 0; // each point needs its own product
   if (result.product.variance_bound == 0)
     result.product.variance_bound = integral_variance_bound;
   return result;
@@ -74,7 +75,7 @@ std::string estimator_name(Estimator estimator) {
   return estimator_names[static_cast<std::size_t>(estimator)].first;
 }
 
-std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator) {
+std::optional<std::string> validate(SamplerKind sampler, Estimator estimator) {
   if (estimator == Estimator::Bidirectional && !traits(sampler).follows_product)
     return "the bidirectional estimator needs directions that follow the product: --sampler "
            "product or "

@@ -18,10 +18,10 @@ LightSamples::LightSamples(const LoadedScene& scene, const RenderOptions& option
       m_integrator(factories.integrator ? factories.integrator->make(samples_of(options))
                                         : nullptr) {}
 
-void LightSamples::forget() {
-  m_sampler->forget();
+void LightSamples::reset() {
+  m_sampler->reset();
   if (m_integrator)
-    m_integrator->forget();
+    m_integrator->reset();
 }
 
 void LightSamples::prepare(const PixelHit& seen, ShadingCost& cost) {
@@ -79,6 +79,15 @@ std::optional<bool> LightSamples::unoccluded(std::size_t i) const {
   if (!(s.pdf > 0) || !(m_point.n.dot(s.direction) > 0))
     return std::nullopt;
   return trace(i);
+}
+
+SumVariance LightSamples::variance_of_sums(std::span<const Contribution> samples) {
+  m_visible.clear();
+  for (const Contribution& sample : samples)
+    m_visible.push_back(sample.visible ? 1 : 0);
+  SumVariance sum = renderer::variance_of_sums(samples);
+  sum += m_sampler->shared_variance(m_visible);
+  return sum;
 }
 
 bool LightSamples::trace(std::size_t i) const {
