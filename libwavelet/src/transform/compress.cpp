@@ -1,6 +1,5 @@
 #include <wavelet/transform/compress.h>
 
-#include "transform/coefficient_walk.h"
 #include "tree/map_batches.h"
 #include "tree/tree_writer.h"
 

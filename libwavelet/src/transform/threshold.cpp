@@ -16,14 +16,6 @@ namespace {
 /// Averages below this share of the map's mean are taken for it: what a sampler's floor does.
 constexpr double average_floor = 0.03;
 
-/// Σ w c², w the luminance weights.
-double weighted_square(const float* c) {
-  double sum = 0;
-  for (int i = 0; i < 3; ++i)
-    sum += static_cast<double>(luminance_weights[i]) * c[i] * c[i];
-  return sum;
-}
-
 /// Visits every coefficient with its square's level and average luminance, coarse to fine within
 /// each square. Visit: void(float* coefficient, int level, double average); it may change the
 /// coefficient, which does not change the averages visited.

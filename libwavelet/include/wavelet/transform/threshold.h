@@ -24,6 +24,15 @@ enum class Criterion {
 
 std::string criterion_name(Criterion criterion);
 
+/// Σ w c² of an RGB triple, w the luminance weights: the norm that coefficients and errors are
+/// measured by.
+inline double weighted_square(const float* c) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i)
+    sum += static_cast<double>(luminance_weights[i]) * c[i] * c[i];
+  return sum;
+}
+
 struct ThresholdOptions {
   Criterion criterion = Criterion::Variance;
   double tolerance = 0.0005; ///< see Criterion; 0 keeps everything that is not zero
