@@ -4,9 +4,11 @@
 
 #include <view/commands.h>
 
+#include <renderer/transfer/relight.h>
 #include <wavelet/base/parallel.h>
+#include <wavelet/file/input_file.h>
 #include <wavelet/file/output_file.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <cstdlib>
 #include <initializer_list>
@@ -152,8 +154,7 @@ void check(const tool::Tool& app, const Options& options) {
 
 bool is_transfer(const std::string& path) {
   return wavelet::file_form(path) &&
-         wavelet::open_tree_set(path, wavelet::Check::WhenUsed).info().provenance.get("transfer") ==
-             "1";
+         renderer::is_transfer(wavelet::open_tree_set(path, wavelet::Check::WhenUsed).info());
 }
 
 int view_input(const tool::Tool& app, Options& options) {
