@@ -30,9 +30,10 @@ void declare_light(tool::Tool& app, Options& options) {
   app.flag(options.environment, "--environment",
            "Light by the scene's probe instead: integrate reflectance times light over the light's "
            "squares");
-  app.optional_input(
-      options.probe, "--probe", "FILE",
-      "Probe image or trees of a light that replaces the scene's; implies --environment");
+  app.optional_input(options.probe, "--probe", "FILE",
+                     "Probe image or trees of a light that replaces the scene's; implies "
+                     "--environment");
+  app.alias("--light", "--probe");
   app.value(options.light_level, "--light-level",
             "With --environment: store the light as 2^N squares a side [10; 8 for --html alone]", 2,
             11);
@@ -78,9 +79,6 @@ void declare_transfer(tool::Tool& app, Options& options) {
   app.values(options.rotate, "--rotate",
              "Transfer: rotate the light by yaw, pitch, roll, degrees, as haarrelight apply", 3,
              -1e6, 1e6);
-  app.optional_input(options.transfer_light, "--light", "PROBE",
-                     "Transfer: another light: a probe image, or a .haar of one world-frame map "
-                     "[the scene's]");
   app.optional_input(options.transfer_scene, "--scene", "SCENE.json",
                      "Transfer: the scene it was built from [the file of that name beside it]");
 }
@@ -90,13 +88,14 @@ void declare(tool::Tool& app, Options& options) {
       options.input, "SCENE.json|FILE.haar",
       "Scene of spheres and planes; or a BRDF set by θ_r, shown on a sphere; or transfer that "
       "haarrelight built with --vary light");
-  app.optional_output(options.frame, "--frame", "OUT.exr|.png",
+  app.optional_output(options.frame, "--image", "OUT.exr|.png",
                       "Write a picture instead of showing a window; a .png is tone-mapped");
   app.optional_output(
       options.page, "--html", "PAGE.html",
       "Write an interactive page for browsers with WebGL 2 instead, in a single file; with "
       "--compare its #check compares as well");
   app.alias("--export", "--html");
+  app.alias("--frame", "--image");
   app.text(options.size, "--size", "WxH", "Size in pixels [the scene's, or 256x256]");
   app.value(options.level, "--level",
             "Level of the trees for all pixels, 13 for full resolution [the level that each pixel "
@@ -123,9 +122,9 @@ void check_window(const tool::Tool& app, const Options& options) {
     refuse(app,
            {"--against", "--material", "--watch", "--no-panel", "--screenshot", "--frames",
             "--turn", "--reloads"},
-           "needs a window, without --frame and --html");
+           "needs a window, without --image and --html");
   else
-    refuse(app, {"--repeat", "--compare", "--reference"}, "needs --frame or --html");
+    refuse(app, {"--repeat", "--compare", "--reference"}, "needs --image or --html");
   if (!options.script.frames)
     refuse(app, {"--screenshot", "--turn", "--reloads"}, "needs --frames");
   if (options.script.reloads > 0 && !options.watch)
@@ -138,7 +137,7 @@ void check_window(const tool::Tool& app, const Options& options) {
 /// Reports contradictions and unwritable outputs before any work. @throws UsageError, Error(Output)
 void check(const tool::Tool& app, const Options& options) {
   if (!options.frame.empty())
-    tool::check_picture_path(options.frame, "--frame");
+    tool::check_picture_path(options.frame, "--image");
   if (app.given("--light-position") && app.given("--light-direction"))
     throw tool::UsageError("--light-direction and --light-position exclude each other");
   if (options.uses_environment())
@@ -163,15 +162,15 @@ int view_input(const tool::Tool& app, Options& options) {
   if (app.given("--threads")) // llvmpipe has a setting of its own
     setenv("LP_NUM_THREADS", std::to_string(thread_count()).c_str(), 1);
   if (!is_transfer(options.input)) {
-    refuse(app, {"--rotate", "--light", "--scene"},
+    refuse(app, {"--rotate", "--scene"},
            "applies to transfer, which haarrelight build makes with --vary light");
     return view_scene(app, options);
   }
   refuse(app,
          {"--size", "--light-direction", "--light-position", "--irradiance", "--environment",
-          "--probe", "--light-level", "--tolerance", "--html", "--against", "--material", "--watch",
+          "--light-level", "--tolerance", "--html", "--against", "--material", "--watch",
           "--reloads"},
-         "does not apply to transfer; --rotate and --light change its light");
+         "does not apply to transfer; --rotate and --probe change its light");
   return view_transfer(app, options);
 }
 

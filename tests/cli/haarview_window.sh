@@ -17,7 +17,7 @@ expect 4 haarview brdf.haar
 has_window || finish
 says "haarview: window: cannot be opened"
 for wrong in "--turn 30" "--frames 0" "--frames 2 --screenshot picture.jpg" "--screenshot picture.png" \
-  "--frames 2 --reloads 1" "--frame picture.png --watch" "--compare"; do
+  "--frames 2 --reloads 1" "--image picture.png --watch" "--compare"; do
   # shellcheck disable=SC2086
   expect 2 haarview brdf.haar $wrong
 done
@@ -80,8 +80,8 @@ saved round brdf.haar --frames 2 --turn 360
 saved other other.haar --frames 1
 saved beside brdf.haar --against other.haar --frames 1
 saved around brdf.haar --frames 1 --probe studio.hdr --light-level 5
-expect 0 haarview brdf.haar --size 120x90 --frame frame.png
-expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --frame frame_around.png
+expect 0 haarview brdf.haar --size 120x90 --image frame.png
+expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --image frame_around.png
 expect 0 haarview brdf.haar --size 400x300 --frames 2 --screenshot panel.png --json
 if has python3; then
   valid_json

@@ -39,7 +39,6 @@ struct Options {
 
   // Of transfer, as haarrelight apply.
   std::string transfer_scene;
-  std::string transfer_light;
   std::vector<double> rotate = {0, 0, 0};
 
   bool shows_window() const { return frame.empty() && page.empty(); }

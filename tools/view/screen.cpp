@@ -25,7 +25,7 @@ namespace {
   glfwGetError(&reason);
   throw_output_error("window", std::string(problem)
                                    .append(reason != nullptr ? std::string(": ") + reason : "")
-                                   .append(" (--frame draws without a window)"));
+                                   .append(" (--image draws without a window)"));
 }
 
 using GlfwWindow = std::unique_ptr<GLFWwindow, decltype(&glfwDestroyWindow)>;

@@ -7,7 +7,7 @@ namespace {
 
 [[noreturn]] void throw_window_missing() {
   throw_output_error("window", "was left out of this build, which found no GLFW and Dear ImGui "
-                               "(--frame draws without a window)");
+                               "(--image draws without a window)");
 }
 
 } // namespace
