@@ -24,8 +24,7 @@ Eigen::Vector3d rotation_angles(const Options& options) {
 }
 
 tool::RelightInput open_input(const tool::Tool& app, const Options& options) {
-  tool::RelightInput input(app,
-                           {options.input, options.transfer_scene, options.probe, {}});
+  tool::RelightInput input(app, {options.input, options.transfer_scene, options.probe, {}});
   if (input.variation().varying != renderer::Varying::Light)
     throw_input_error(options.input, "was built with --vary " + input.transfer().varying_text() +
                                          "; expected --vary light");
