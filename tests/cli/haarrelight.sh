@@ -128,7 +128,7 @@ expect 3 haarrelight apply studio.haar -o x.exr
 says "holds no transfer"
 sed 's/"type": "plane"/"name": "ball", "type": "plane"/' scene.json >other.json
 expect 3 haarrelight build other.json -o x.haar
-says "objects[1] already"
+says "already the name of objects[1]"
 rm other.json
 refuses_bad_input x.exr haarrelight apply @ --scene scene.json -o x.exr
 refuses_bad_input x.haar haarrelight build @ -o x.haar

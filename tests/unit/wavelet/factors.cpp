@@ -4,7 +4,6 @@
 #include "tree_views.h"
 
 #include <wavelet/product/multiply.h>
-#include <wavelet/product/projection.h>
 #include <wavelet/product/synchronous_product.h>
 #include <wavelet/square/sphere_map.h>
 #include <wavelet/transform/compress.h>
@@ -161,40 +160,6 @@ TEST_CASE("constants and functions with zeros are factors like any other") {
   const auto result = chi_square_of(product, 8);
   CHECK(result.pdf_sum == Approx(1).margin(1e-3));
   CHECK(result.statistic < result.limit);
-}
-
-TEST_CASE("the integral with a rotated reflectance is the dense sum over rotated directions") {
-  Map lobe(64);
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const Vec3 w = square_to_sphere(
-          Vec2((static_cast<float>(x) + 0.5F) / 64, (static_cast<float>(y) + 0.5F) / 64));
-      lobe.set(x, y, Rgb(1.0F, 0.8F, 0.5F) * std::exp(6 * (w.z() - 1)));
-    }
-  const Tree lobe_tree = tree_of(lobe, 0);
-  const TreeView lobes[2] = {lobe_tree.view(), lobe_tree.view()};
-  const Pyramid pyramid(lobes);
-  const Tree light = tree_of(random_map(64, 3), 0.1);
-  const RotatedReflectance reflectance = {&pyramid, 0, 1, 0.5F,
-                                          reflection_frame(Vec3::UnitX(), Vec3(0.8F, 0.6F, 0))};
-  ProjectionOptions options;
-  options.levels = 6;
-  options.tolerance = 1e-3;
-  const ProjectionFactor factors[] = {{light.view(), nullptr}};
-  ProductProjector projector(options);
-  projector.make(factors, &reflectance);
-  const Map light_map = light.view().reconstruct(6);
-  Eigen::Array3d expected = Eigen::Array3d::Zero();
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const Vec3 w = square_to_sphere(
-          Vec2((static_cast<float>(x) + 0.5F) / 64, (static_cast<float>(y) + 0.5F) / 64));
-      const Rgb value =
-          Rgb(1.0F, 0.8F, 0.5F) * std::exp(6 * (reflectance.reflection.frame.n.dot(w) - 1));
-      expected += (light_map.at(x, y) * value).cast<double>() / 4096;
-    }
-  const Rgb found = projector.mean();
-  CHECK(((found.cast<double>() - expected).abs() / expected).maxCoeff() < 0.01);
 }
 
 TEST_CASE("trees give the averages of their quadrants, however they are turned or stored") {

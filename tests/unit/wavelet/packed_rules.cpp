@@ -141,7 +141,7 @@ TEST_CASE("every broken rule of the packed header is refused") {
       {"another number of levels", [](Bytes& b) { put(b, 32 + 32, 4U); }},
       {"another number of channels", [](Bytes& b) { put(b, 32 + 36, 1U); }},
       {"another type", [](Bytes& b) { put(b, 32 + 40, 1U); }},
-      {"mapped kind", [](Bytes& b) { put(b, 32 + 24, 3U); }},
+      {"mapped kind", [](Bytes& b) { put(b, 32 + 24, 4U); }},
       {"more columns than trees", [](Bytes& b) { put(b, 32 + 48, 65536U); }},
       {"mapped file size", [](Bytes& b) { put(b, 32 + 16, std::uint64_t{1} << 40U); }},
       {"mapped index offset",

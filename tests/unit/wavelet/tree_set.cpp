@@ -149,7 +149,7 @@ TEST_CASE("every broken rule is refused") {
       {"file size", [](auto& b) { b += '\0'; }, true},
       {"truncation", [](auto& b) { b.resize(b.size() - 9); }, false},
       {"header only", [](auto& b) { b.resize(100); }, false},
-      {"kind", [](auto& b) { put(b, 24, 3U); }, true},
+      {"kind", [](auto& b) { put(b, 24, 4U); }, true},
       {"domain", [](auto& b) { put(b, 28, 0U); }, true},
       {"levels", [](auto& b) { put(b, 32, 14U); }, true},
       {"channels", [](auto& b) { put(b, 36, 2U); }, true},
