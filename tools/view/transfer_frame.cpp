@@ -49,7 +49,9 @@ std::vector<float> reference_of(const tool::RelightInput& input, const Options& 
     return read_reference(options.reference, transfer.width(), transfer.height());
   if (!options.compare)
     return {};
-  return light_relighter(transfer, input.scene())->make(change_of(options)).rgb;
+  return make_relighter(transfer, input.scene(), {renderer::Varying::Light})
+      ->make(change_of(options))
+      .rgb;
 }
 
 /// Median time that it takes to turn the light and to hand it to GL, ms.
