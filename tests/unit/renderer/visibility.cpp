@@ -150,3 +150,18 @@ TEST_CASE("visibilities multiply to what is seen past all objects", "[visibility
   CHECK(result.wrong == 0);
   CHECK(result.mean == Approx(result.rays).margin(2e-3));
 }
+
+TEST_CASE("occluder trees are those of objects that occlude the hemisphere of a point",
+          "[visibility]") {
+  ShapeSet set;
+  set.add(Sphere{Vec3::Zero(), 0.1F}); // the shaded object
+  set.add(Sphere{Vec3(0.6F, 0.7F, -0.4F), 0.5F});
+  set.add(Sphere{Vec3(0, -3, 0), 0.5F}); // below the horizon
+  const Hit hit = top_of_sphere();
+  const VisibilityTrees visibility(set, turned_light());
+  OccluderTrees occluders(visibility, set.size(), levels);
+  const auto trees = occluders.at(hit);
+  REQUIRE(trees.size() == 1);
+  CHECK(trees[0].mean[0] == visibility.object(1, hit, levels).mean[0]);
+  CHECK(occluders.at(hit, 1).empty());
+}
