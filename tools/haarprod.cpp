@@ -4,7 +4,7 @@
 #include <support/words.h>
 
 #include <wavelet/base/error.h>
-#include <wavelet/file/file_hash.h>
+#include <wavelet/file/input_file.h>
 #include <wavelet/product/multiply.h>
 #include <wavelet/square/sphere_map.h>
 

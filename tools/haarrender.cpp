@@ -8,7 +8,7 @@
 
 #include <renderer/film/render.h>
 #include <renderer/scene/scene.h>
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/file/output_file.h>
 
 using namespace haarlight;

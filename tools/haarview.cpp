@@ -12,7 +12,6 @@
 
 #include <renderer/light/light.h>
 #include <wavelet/base/parallel.h>
-#include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>
 #include <wavelet/file/output_file.h>
 #include <wavelet/file/provenance.h>

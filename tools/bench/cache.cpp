@@ -7,7 +7,7 @@
 #include <brdf/brdf_maps.h>
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
-#include <wavelet/file/file_hash.h>
+#include <wavelet/file/input_file.h>
 #include <wavelet/transform/compress.h>
 
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 
 #include <brdf/merl_file.h>
 #include <probe/read_probe.h>
-#include <wavelet/file/file_hash.h>
+#include <wavelet/file/input_file.h>
 
 namespace haarlight::bench {
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 
 namespace haarlight::image {
 namespace {
@@ -16,7 +17,7 @@ using wavelet::Fold;
 using wavelet::SetInfo;
 using wavelet::SetKind;
 
-constexpr std::array<const char*, 3> kind_names = {"generic", "brdf", "light"};
+constexpr std::array<const char*, 4> kind_names = {"generic", "brdf", "light", "transfer"};
 constexpr std::array<const char*, 3> fold_names = {"none", "rotations", "mirrors"};
 constexpr int largest_size = 1 << 13; // as .haar files have it
 constexpr int most_columns = 1 << 16;
@@ -45,13 +46,15 @@ public:
     return value;
   }
   template <class E>
-  E choice(const std::string& name, const std::array<const char*, 3>& words) const {
+  E choice(const std::string& name, std::span<const char* const> words) const {
     const std::string& word = text(name);
     for (std::uint32_t i = 0; i < words.size(); ++i)
       if (word == words[i])
         return static_cast<E>(i);
-    fail("haarlight:" + name + " is '" + word + "', " + words[0] + ", " + words[1] + " or " +
-         words[2] + " is needed");
+    std::string choices = words.front();
+    for (std::size_t i = 1; i < words.size(); ++i)
+      choices.append(i + 1 < words.size() ? ", " : " or ").append(words[i]);
+    fail("haarlight:" + name + " is '" + word + "', " + choices + " is needed");
   }
   [[noreturn]] void fail(const std::string& message) const { throw_input_error(m_path, message); }
 

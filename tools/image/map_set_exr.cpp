@@ -4,7 +4,7 @@
 #include <image/map_set_attributes.h>
 
 #include <wavelet/base/error.h>
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/base/parallel.h>
 
 #include <OpenEXR/ImfChannelList.h>

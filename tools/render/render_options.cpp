@@ -36,7 +36,7 @@ void declare_sampling(Tool& app, RenderOptions& render) {
       "Leaves of a product at most; product-visibility takes 25 for each sample at most, or 400 "
       "where there may be shadows",
       64, 1 << 20);
-  app.value(render.sampling.product.drift_bound, "--product-drift",
+  app.value(render.sampling.product.reuse_variance_bound, "--product-drift",
             "Relative variance per sample that a pixel may add by using its neighbour's product; "
             "0 = each its own",
             0, 100);

@@ -1,7 +1,7 @@
 #pragma once
 // Two sets of maps from files of either kind, brought into one form.
 
-#include <wavelet/tree/map_views.h>
+#include <wavelet/tree/compare.h>
 
 #include <string>
 #include <vector>

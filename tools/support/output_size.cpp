@@ -2,8 +2,8 @@
 
 #include <support/words.h>
 
-#include <wavelet/base/available_memory.h>
 #include <wavelet/base/error.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/base/parallel.h>
 
 #include <algorithm>

@@ -49,7 +49,7 @@ const NamedTree* out_of_frame(const std::vector<NamedTree>& trees) {
   const NamedTree* first = nullptr;
   for (const NamedTree& tree : trees) {
     const wavelet::SetInfo& info = tree.set->info();
-    if (info.kind == wavelet::SetKind::Generic)
+    if (info.kind != wavelet::SetKind::Brdf && info.kind != wavelet::SetKind::Light)
       continue;
     if (first == nullptr)
       first = &tree;

@@ -11,7 +11,7 @@
 #include <view/window_run.h>
 
 #include <wavelet/base/error.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <algorithm>
 #include <bit>
@@ -117,7 +117,7 @@ bool is_transfer(const std::string& path) {
   if (!form)
     return false;
   const wavelet::TreeSet set = wavelet::open_tree_set(path, wavelet::Check::WhenUsed);
-  return set.info().provenance.get("transfer") == "1";
+  return renderer::is_transfer(set.info());
 }
 
 int view_transfer(const tool::Tool& app, const Options& options) {

@@ -3,7 +3,7 @@
 // their coefficients, breadth first, and the light's coefficients by square. No GL here;
 // relight.glsl reads what is made here.
 //
-// Squares count as in <wavelet/transform/dense_coefficients.h>, so that a coarser level's come
+// Squares count as in <wavelet/product/multiply.h>, so that a coarser level's come
 // first. A texel's first three numbers are the differences d1, d2, d3 of a square: R, G, B as
 // signed numbers of ten bits, red lowest, in a unit of that texel. The fourth is of transfer:
 // square << 8 | e, the unit being 2^(e - 127); of the light: the unit as a float's bits.
@@ -11,7 +11,7 @@
 #include <view/packed_scene.h>
 
 #include <renderer/transfer/transfer.h>
-#include <wavelet/transform/dense_coefficients.h>
+#include <wavelet/product/multiply.h>
 #include <wavelet/tree/tree.h>
 
 #include <span>
