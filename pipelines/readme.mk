@@ -30,7 +30,7 @@ $(views): flags =
 level.exr: flags = --level 4
 environment.exr: flags = --environment
 $(views): gallery/scene/viewer.json
-	$(step) update $@ $(@:.exr=.txt) -- $< $(sources) $(trees) -- haarview $< --frame $@ $(flags)
+	$(step) update $@ $(@:.exr=.txt) -- $< $(sources) $(trees) -- haarview $< --image $@ $(flags)
 viewer.png: $(views)
 	$(step) update $@ -- $^ -- haarsheet $^ --caption "lamp" --caption "lamp, level 4" \
 	  --caption "environment" --columns 3 --tone-map filmic -o $@; publish $@ "$$pictures/viewer.png"
@@ -39,4 +39,4 @@ light.haar: gallery/scene/viewer.json
 	$(step) update $@ light.txt -- $< $(sources) $(trees) -- haarrelight build $< --vary light -o $@
 turning.png: light.haar
 	$(step) update $@ -- $< gallery/scene/viewer.json -- haarrelight sweep $< --scene gallery/scene/viewer.json \
-	  --frames 6 --on-sheet 6 -o $@; publish $@ "$$pictures/relight.png"
+	  --pictures 6 --on-sheet 6 -o $@; publish $@ "$$pictures/relight.png"

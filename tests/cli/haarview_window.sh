@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# haarview's window on a screen of its own: turned, saved, beside another, and with files rewritten under it.
+# haarview's window on a virtual screen: orbit, screenshots, two panes, and files that are rewritten.
 source "$(dirname "$0")/lib.sh" "$1"
 source "$(dirname "$0")/view_lib.sh"
 
@@ -11,16 +11,13 @@ done
 "$bin/probesynth" --scene studio --size 32 -q -o studio.hdr >/dev/null
 inputs="brdf.binary brdf.haar other.binary other.haar studio.hdr"
 
-# what goes wrong without a screen
+# errors without a screen
 unset DISPLAY WAYLAND_DISPLAY
 expect 4 haarview brdf.haar
-if grep -q "left out of this build" "$log/err"; then
-  echo "skipped: haarview was built without a window"
-  exit 77
-fi
+has_window || finish
 says "haarview: window: cannot be opened"
 for wrong in "--turn 30" "--frames 0" "--frames 2 --screenshot picture.jpg" "--screenshot picture.png" \
-  "--frames 2 --reloads 1" "--frame picture.png --watch" "--compare"; do
+  "--frames 2 --reloads 1" "--image picture.png --watch" "--compare"; do
   # shellcheck disable=SC2086
   expect 2 haarview brdf.haar $wrong
 done
@@ -29,13 +26,7 @@ expect 2 haarview brdf.haar --environment
 # shellcheck disable=SC2086
 leaves $inputs
 
-command -v Xvfb >/dev/null || { echo "skipped: Xvfb is not installed"; finish; exit 77; }
-mkfifo "$log/display"
-Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3<>"$log/display" >/dev/null 2>&1 &
-screen=$!
-trap 'kill "$screen" 2>/dev/null; rm -rf "$log"' EXIT
-read -r -t 30 number <"$log/display" || { echo "skipped: Xvfb does not start"; exit 77; }
-export DISPLAY=:$number
+start_screen || finish
 
 # pixels A.png B.png: sets $brightness, the mean code of A, and $difference, the mean of |A - B|; codes up to 255
 pixels() {
@@ -72,9 +63,8 @@ print(sum(a) / len(a), sum(abs(x - y) for x, y in zip(a, b)) / len(a) if len(a) 
 END
 )
 }
-number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
 
-# saved NAME ARGUMENTS…: a picture of the window without its controls
+# saved NAME ARGUMENTS…: a screenshot of the window without its controls
 saved() {
   local name=$1
   shift
@@ -88,13 +78,13 @@ saved again brdf.haar --frames 3 --turn 40
 same turned.png again.png
 saved round brdf.haar --frames 2 --turn 360
 saved other other.haar --frames 1
-saved beside brdf.haar --against other.haar --frames 1
+saved beside brdf.haar --beside other.haar --frames 1
 saved around brdf.haar --frames 1 --probe studio.hdr --light-level 5
-expect 0 haarview brdf.haar --size 120x90 --frame frame.png
-expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --frame frame_around.png
+expect 0 haarview brdf.haar --size 120x90 --image frame.png
+expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --image frame_around.png
 expect 0 haarview brdf.haar --size 400x300 --frames 2 --screenshot panel.png --json
-if command -v python3 >/dev/null; then
-  check "valid JSON" python3 -m json.tool "$log/out"
+if has python3; then
+  valid_json
   for kind in "still frame" "around frame_around"; do
     # shellcheck disable=SC2086
     pixels ${kind/ /.png }.png
@@ -106,11 +96,9 @@ if command -v python3 >/dev/null; then
     pixels $another.png still.png
     number "$brightness > 10 && $difference > 1"
   done
-else
-  echo "skipped: pictures are not compared, as python3 is not installed"
 fi
 
-# watched WAY NAME: a file is rewritten in that way again and again until the window has tried to read it once
+# watched WAY NAME: a file is rewritten in that way repeatedly until the window has tried to reload it once
 watched() {
   cp brdf.haar watched.haar
   timeout 60 "$bin/haarview" watched.haar --size 120x90 --no-panel --watch --reloads 1 --frames 1 --json \
@@ -125,14 +113,14 @@ half_written() { head -c 3000 other.haar >"$1"; }
 watched replaced reloaded
 same reloaded.png other.png
 prints '"reloads": 1'
-says "watched.haar was read again"
+says "watched.haar was reloaded"
 watched rewritten reloaded
 same reloaded.png other.png
 watched half_written kept
 same kept.png still.png
 prints '"refused_reloads": 1'
 says "watched.haar"
-says "the version before is kept"
+says "the previous version is kept"
 
 # shellcheck disable=SC2086
 leaves $inputs still.png turned.png again.png round.png other.png beside.png around.png frame.png frame_around.png \

@@ -52,7 +52,7 @@ const std::vector<Case> cases = {
     {"haarinfo", {"haarinfo", "../in/packed.haar", "--html", "out.html"}, {"out.html"}},
     {"haardiff", {"haardiff", "../in/light.haar", "../in/light.exr", "--image", "out.png"}, {"out.png"}},
     {"haarprod", {"haarprod", "../in/light.haar", "../in/light.haar", "-o", "out.haar"}, {"out.haar"}},
-    {"haarrender", {"haarrender", "../in/scene.json", "--spp", "1", "-o", "out.exr", "--png", "out.png"}, {"out.exr", "out.png"}},
+    {"haarrender", {"haarrender", "../in/scene.json", "--spp", "1", "-o", "out.exr", "--image", "out.png"}, {"out.exr", "out.png"}},
     {"haarrelight-build", {"haarrelight", "build", "../in/scene.json", "--vary", "light", "--tolerance", "0.3", "--resolution", "8", "-o", "out.haar"}, {"out.haar"}},
     {"haarrelight-apply", {"haarrelight", "apply", "../in/transfer.haar", "-o", "out.exr"}, {"out.exr"}},
     {"haarsheet", {"haarsheet", "../in/picture.exr", "../in/picture.exr", "-o", "out.png"}, {"out.png"}},
@@ -60,8 +60,8 @@ const std::vector<Case> cases = {
     {"haarrelight-sweep", {"haarrelight", "sweep", "../in/transfer.haar", "--frames", "2", "-o", "out.png"}, {"out.png", "out-0000.png", "out-0001.png"}},
     {"haarbench", {"haarbench", "--brdf", "../in/ggx.binary", "--probe", "../in/studio.hdr", "--samplers", "light", "--size", "4x4", "--seeds", "2", "--spp", "1", "--reference-spp", "16", "--brdf-size", "8", "--theta", "2", "--probe-size", "8", "-o", "out"},
      {"out/results.json", "out/results.csv", "out/report.html"}, true, "out/cache/"},
-    {"haarview", {"haarview", "../in/transfer.haar", "--frame", "out.exr"}, {"out.exr"}, false, "", true},
-    {"haarview-export", {"haarview", "../in/lobe.haar", "--size", "8x8", "--export", "out.html"}, {"out.html"}, false, "", true},
+    {"haarview", {"haarview", "../in/transfer.haar", "--image", "out.exr"}, {"out.exr"}, false, "", true},
+    {"haarview-export", {"haarview", "../in/lobe.haar", "--size", "8x8", "--html", "out.html"}, {"out.html"}, false, "", true},
 };
 
 const std::vector<Strings> preparation = {

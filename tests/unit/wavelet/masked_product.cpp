@@ -95,8 +95,11 @@ TEST_CASE("masked leaves may be split as far as wanted", "[masked]") {
   const std::vector<TreeView> factors = {s.masks[0].view(), s.masks[1].view(), s.light.view()};
   const Tree product = multiply(factors);
   for (std::size_t i = 0; i < all.size(); i += 97) {
-    const Rgb expected = product.view().average(all[i].level, all[i].x, all[i].y);
-    CHECK((to_rgb(all[i].left) - expected).abs().maxCoeff() < 1e-4F * (1 + expected.maxCoeff()));
+    const Square& place = all[i].square;
+    const Rgb expected = product.view().average(place.level, static_cast<int>(place.column),
+                                                static_cast<int>(place.row));
+    CHECK((to_rgb(all[i].visible_light) - expected).abs().maxCoeff() <
+          1e-4F * (1 + expected.maxCoeff()));
   }
 }
 
