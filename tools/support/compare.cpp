@@ -60,8 +60,6 @@ std::string values_of(const SetInfo& info) {
     return info.world_frame ? "radiance in the world's frame" : "radiance in mirror frames";
   case SetKind::Transfer:
     return "a transfer";
-  case SetKind::Transfer:
-    return "a transfer";
   case SetKind::Generic:
     break;
   }

@@ -171,7 +171,7 @@ TEST_CASE("reference: the exponent of the theorem is not the one printed") {
   const Basis basis(32);
   for (int j0 = 0; j0 <= 4; ++j0)
     for (int type = 1; type <= 3; ++type) {
-      const BasisFunction f = {{j0, (1 << j0) / 2, 0}, type};
+      const BasisFunction f = {{j0, (1U << j0) / 2, 0}, type};
       const std::vector<BasisFunction> tuple = {f, f, f, f};
       const double dense = dense_integral(tuple, basis);
       CHECK(product_integral(tuple) == dense);

@@ -34,10 +34,11 @@ inline Image basis_image(const BasisFunction& f, int size) {
     haarlight::wavelet::haar_inverse(image.data(), size, 1);
     return image;
   }
-  const int side = size >> l;
-  for (int j = y * side; j < (y + 1) * side; ++j)
-    for (int i = x * side; i < (x + 1) * side; ++i)
-      image[static_cast<std::size_t>(j * size + i)] = std::ldexp(1.0, l);
+  const auto pixels = static_cast<std::uint32_t>(size);
+  const std::uint32_t side = pixels >> static_cast<unsigned>(l);
+  for (std::uint32_t j = f.square.row * side; j < (f.square.row + 1) * side; ++j)
+    for (std::uint32_t i = f.square.column * side; i < (f.square.column + 1) * side; ++i)
+      image[std::size_t{j} * pixels + i] = std::ldexp(1.0, l);
   return image;
 }
 
@@ -51,8 +52,8 @@ struct Basis {
   explicit Basis(int pixels) : size(pixels) {
     functions.push_back({});
     for (int l = 0; (1 << l) < size; ++l)
-      for (int y = 0; y < (1 << l); ++y)
-        for (int x = 0; x < (1 << l); ++x)
+      for (std::uint32_t y = 0; y >> l == 0; ++y)
+        for (std::uint32_t x = 0; x >> l == 0; ++x)
           for (int m = 1; m <= 3; ++m)
             functions.push_back({{l, x, y}, m});
     for (const BasisFunction& f : functions)
