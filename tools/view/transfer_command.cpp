@@ -40,7 +40,7 @@ std::vector<float> reference_frame(const tool::RelightInput& input, const Option
     return {};
   renderer::Change change;
   change.rotate = rotation_angles(options);
-  return light_relighter(transfer, input.scene())->make(change).rgb;
+  return make_relighter(transfer, input.scene(), renderer::Variation())->make(change).rgb;
 }
 
 void draw_frame(const tool::RelightInput& input, const Options& options, tool::Report& report) {

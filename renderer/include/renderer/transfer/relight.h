@@ -73,7 +73,8 @@ struct Change {
   Vec3 move = Vec3::Zero(); ///< object or eye: displacement from its position in the scene, world
 };
 
-/// Computes pictures from a transfer file.
+/// Computes pictures from a transfer file under changes of its varying factor: a light that rotates
+/// or is replaced, an object that moves with its shadows, a replaced material, or a moved eye.
 class Relighter {
 public:
   virtual ~Relighter() = default;
@@ -86,22 +87,5 @@ public:
 /// @throws Error(Input) if those cannot be read
 std::unique_ptr<Relighter> make_relighter(const Transfer& transfer, const SceneDescription& scene,
                                           const Variation& variation);
-
-/// The light is rotated or replaced: inner products with its coefficients. Background pixels show
-/// the light.
-std::unique_ptr<Relighter> light_relighter(const Transfer& transfer, const SceneDescription& scene);
-
-/// One object and its shadows move: the occluded part of each tree is subtracted, for a sphere by a
-/// descent along the edge of its cap, for other shapes by the inner product with the visibility.
-/// The object itself is shaded by the scene's light with the shadows of the other objects.
-std::unique_ptr<Relighter> object_relighter(const Transfer& transfer, const SceneDescription& scene,
-                                            const Variation& variation);
-
-/// One material is replaced, or all points are seen from another eye: products of the trees with
-/// reflectances evaluated per square. The points stay those of the transfer's film, so that only
-/// highlights move with the eye; points facing away from it are black.
-std::unique_ptr<Relighter> reflectance_relighter(const Transfer& transfer,
-                                                 const SceneDescription& scene,
-                                                 const Variation& variation);
 
 } // namespace haarlight::renderer
