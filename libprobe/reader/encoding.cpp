@@ -1,6 +1,6 @@
 #include "encoding.h"
 
-#include "mapping/elementary.h"
+#include <wavelet/base/elementary.h>
 
 #include <cmath>
 #include <limits>
@@ -29,7 +29,7 @@ Encoding srgb_encoding(std::string note) {
 Encoding linear_encoding(std::string note) { return {{}, std::nullopt, std::move(note)}; }
 
 Encoding power_encoding(double exponent, std::string note) {
-  const Curve curve = [exponent](double v) { return v > 0 ? power(v, exponent) : 0; };
+  const Curve curve = [exponent](double v) { return power(v, exponent); };
   return {{curve, curve, curve}, std::nullopt, std::move(note)};
 }
 

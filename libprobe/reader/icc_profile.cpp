@@ -2,10 +2,9 @@
 
 #include "encoding.h"
 
-#include "mapping/elementary.h"
+#include <wavelet/base/elementary.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 namespace haarlight::probe::reader {
@@ -62,14 +61,12 @@ ProfileBytes find_tag(const ProfileBytes& profile, std::string_view signature) {
   return ProfileBytes({});
 }
 
-double positive_power(double base, double exponent) { return base > 0 ? power(base, exponent) : 0; }
-
 Curve gamma_curve(double exponent) {
   if (!(exponent > 0))
     refuse_profile();
   if (exponent == 1)
     return {};
-  return [exponent](double v) { return positive_power(v, exponent); };
+  return [exponent](double v) { return power(v, exponent); };
 }
 
 /// curveType: nothing = identity, one value = a gamma, else a table over [0, 1].
@@ -114,7 +111,7 @@ Curve read_parametric_curve(const ProfileBytes& tag) {
     f = offset;
   }
   return [g = g, a = a, b = b, c = c, d = d, e = e, f = f](double v) {
-    return v >= d ? positive_power(a * v + b, g) + e : c * v + f;
+    return v >= d ? power(a * v + b, g) + e : c * v + f;
   };
 }
 

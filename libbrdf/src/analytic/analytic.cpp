@@ -8,10 +8,8 @@
 namespace haarlight::brdf {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 Rgb lambert_plus(const Rgb& diffuse, const Rgb& specular, double lobe) {
-  return diffuse * static_cast<float>(1 / pi) + specular * static_cast<float>(lobe);
+  return diffuse * static_cast<float>(1 / std::numbers::pi) + specular * static_cast<float>(lobe);
 }
 
 } // namespace
@@ -36,7 +34,7 @@ Rgb Ggx::evaluate(const Angles& a) const {
 Rgb BlinnPhong::evaluate(const Angles& a) const {
   const double n = exponent;
   const double norm =
-      (n + 2) * (n + 4) / (8 * pi * (exponential(-0.5 * n * std::numbers::ln2) + n));
+      (n + 2) * (n + 4) / (8 * std::numbers::pi * (exponential(-0.5 * n * std::numbers::ln2) + n));
   return lambert_plus(diffuse, specular, norm * cosine_power(a, n));
 }
 
@@ -44,7 +42,7 @@ Rgb Ward::evaluate(const Angles& a) const {
   const double alpha2 = roughness * roughness;
   const double tan2 = a.sin_h * a.sin_h / std::max(a.cos_h * a.cos_h, 1e-12);
   const double lobe =
-      exponential(-tan2 / alpha2) / (4 * pi * alpha2 * std::sqrt(a.cos_i * a.cos_o));
+      exponential(-tan2 / alpha2) / (4 * std::numbers::pi * alpha2 * std::sqrt(a.cos_i * a.cos_o));
   return lambert_plus(diffuse, specular, lobe);
 }
 
@@ -54,14 +52,16 @@ Rgb Lafortune::evaluate(const Angles& a) const {
   const double tangential = 2 * a.cos_d * a.cos_d - 1 - z_product;
   const double largest = std::max(std::abs(c_xy), std::abs(c_z));
   const double base = std::max(0.0, (c_xy * tangential + c_z * z_product) / largest);
-  return lambert_plus(diffuse, specular, (exponent + 2) / (2 * pi) * power(base, exponent));
+  return lambert_plus(diffuse, specular,
+                      (exponent + 2) / (2 * std::numbers::pi) * power(base, exponent));
 }
 
 Rgb AshikhminShirley::evaluate(const Angles& a) const {
-  const double lobe = (exponent + 1) / (8 * pi) * cosine_power(a, exponent) /
+  const double lobe = (exponent + 1) / (8 * std::numbers::pi) * cosine_power(a, exponent) /
                       (std::max(a.cos_d, 1e-6) * std::max(a.cos_i, a.cos_o));
   const double both = (1 - fifth_power(1 - 0.5 * a.cos_i)) * (1 - fifth_power(1 - 0.5 * a.cos_o));
-  const Rgb matt = diffuse * (1.0F - specular) * static_cast<float>(28 / (23 * pi) * both);
+  const Rgb matt =
+      diffuse * (1.0F - specular) * static_cast<float>(28 / (23 * std::numbers::pi) * both);
   return matt + fresnel(specular, a.cos_d) * static_cast<float>(lobe);
 }
 

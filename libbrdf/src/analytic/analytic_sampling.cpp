@@ -2,36 +2,26 @@
 
 #include "analytic/analytic_terms.h"
 
+#include <wavelet/base/sampling.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace haarlight::brdf {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// Either part gets this share of the samples at least, if the model has both.
 constexpr float smallest_share = 0.1F;
 
-Vec3 spherical(double cosine, double u) {
-  const SineCosine phi = sine_cosine(2 * pi * u);
+/// By (n + 1) / 2π cos^n θ about z.
+Vec3 cosine_power_direction(double n, const Vec2& u) {
+  const double cosine = exponential(logarithm(1 - static_cast<double>(u.x())) / (n + 1));
+  const SineCosine phi = sine_cosine(2 * std::numbers::pi * static_cast<double>(u.y()));
   const double sine = std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
   return Vec3(static_cast<float>(sine * phi.cosine), static_cast<float>(sine * phi.sine),
               static_cast<float>(cosine))
       .normalized();
 }
-
-/// By (n + 1) / 2π cos^n θ about z.
-Vec3 cosine_power_direction(double n, const Vec2& u) {
-  return spherical(exponential(logarithm(1 - static_cast<double>(u.x())) / (n + 1)),
-                   static_cast<double>(u.y()));
-}
-
-Vec3 cosine_direction(const Vec2& u) {
-  return spherical(std::sqrt(1 - static_cast<double>(u.x())), static_cast<double>(u.y()));
-}
-
-double cosine_density(const Vec3& wi) { return std::max(0.0, static_cast<double>(wi.z())) / pi; }
 
 /// Angles of a pair whose second is above the horizon, with the half vector turned upwards: every
 /// direction of the sphere has exactly one such half vector.
@@ -47,7 +37,7 @@ double mirrored(double half_vector_density, const Angles& a) {
 }
 
 double cosine_power_density(double n, const Angles& a) {
-  return mirrored((n + 1) / (2 * pi) * cosine_power(a, n), a);
+  return mirrored((n + 1) / (2 * std::numbers::pi) * cosine_power(a, n), a);
 }
 
 Vec3 sample_specular(const BlinnPhong& model, const Vec3& wo, const Vec2& u) {
@@ -69,7 +59,7 @@ double specular_density(const AshikhminShirley& model, const Vec3& wo, const Vec
 Vec3 sample_specular(const Ward& model, const Vec3& wo, const Vec2& u) {
   const double tan2 =
       -model.roughness * model.roughness * logarithm(1 - static_cast<double>(u.x()));
-  const SineCosine phi = sine_cosine(2 * pi * static_cast<double>(u.y()));
+  const SineCosine phi = sine_cosine(2 * std::numbers::pi * static_cast<double>(u.y()));
   const double tangent = std::sqrt(std::max(0.0, tan2));
   const Vec3 slope(static_cast<float>(tangent * phi.cosine), static_cast<float>(tangent * phi.sine),
                    1.0F);
@@ -80,7 +70,7 @@ double specular_density(const Ward& model, const Vec3& wo, const Vec3& wi) {
   const Angles a = upward_angles(wi, wo);
   const double alpha2 = model.roughness * model.roughness;
   const double cos2 = std::max(a.cos_h * a.cos_h, 1e-12);
-  const double peak = pi * alpha2 * cos2 * std::sqrt(cos2);
+  const double peak = std::numbers::pi * alpha2 * cos2 * std::sqrt(cos2);
   return mirrored(exponential(-a.sin_h * a.sin_h / (cos2 * alpha2)) / peak, a);
 }
 
@@ -98,7 +88,7 @@ Vec3 sample_specular(const Lafortune& model, const Vec3& wo, const Vec2& u) {
 double specular_density(const Lafortune& model, const Vec3& wo, const Vec3& wi) {
   const Eigen::Vector3d axis = lobe_axis(model, wo).cast<double>().normalized();
   const double cosine = std::clamp(axis.dot(wi.cast<double>().normalized()), 0.0, 1.0);
-  return (model.exponent + 1) / (2 * pi) * power(cosine, model.exponent);
+  return (model.exponent + 1) / (2 * std::numbers::pi) * power(cosine, model.exponent);
 }
 
 /// Listing 1 of Heitz 2018, isotropic.
@@ -110,7 +100,7 @@ Vec3 sample_specular(const Ggx& model, const Vec3& wo, const Vec2& u) {
   const float length = across.norm();
   const Vec3 t1 = length > 1e-7F ? Vec3(across / length) : view.t;
   const Vec3 t2 = view.n.cross(t1);
-  const SineCosine phi = sine_cosine(2 * pi * static_cast<double>(u.y()));
+  const SineCosine phi = sine_cosine(2 * std::numbers::pi * static_cast<double>(u.y()));
   const float r = std::sqrt(u.x());
   const float x = r * static_cast<float>(phi.cosine);
   const float s = 0.5F * (1 + view.n.z());
@@ -164,7 +154,7 @@ AnalyticSampling::AnalyticSampling(const AnalyticBrdf& model, const Vec3& local_
 
 Vec3 AnalyticSampling::sample(const Vec2& u) const {
   if (u.x() < m_diffuse_share)
-    return cosine_direction({u.x() / m_diffuse_share, u.y()});
+    return sample_cosine_hemisphere({u.x() / m_diffuse_share, u.y()});
   // Rounding may not bring the point to the square's edge.
   const float rest = std::min((u.x() - m_diffuse_share) / (1 - m_diffuse_share), 0x1.fffffep-1F);
   return std::visit([&](const auto& m) { return sample_specular(m, m_wo, Vec2(rest, u.y())); },
@@ -173,7 +163,7 @@ Vec3 AnalyticSampling::sample(const Vec2& u) const {
 
 float AnalyticSampling::pdf(const Vec3& local_wi) const {
   const auto diffuse = static_cast<double>(m_diffuse_share);
-  double density = diffuse * cosine_density(local_wi);
+  double density = diffuse * static_cast<double>(cosine_hemisphere_pdf(local_wi));
   if (m_diffuse_share < 1)
     density +=
         (1 - diffuse) *

@@ -1,11 +1,9 @@
 #pragma once
 // Terms that the analytic models' values and their sampling have in common.
 
-#include "analytic/elementary.h"
-
 #include <brdf/analytic.h>
 
-#include <numbers>
+#include <wavelet/base/elementary.h>
 
 namespace haarlight::brdf {
 

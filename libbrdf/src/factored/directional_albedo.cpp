@@ -1,6 +1,6 @@
 #include <brdf/directional_albedo.h>
 
-#include "analytic/elementary.h"
+#include <wavelet/base/elementary.h>
 
 #include <algorithm>
 #include <array>

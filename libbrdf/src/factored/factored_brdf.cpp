@@ -3,7 +3,7 @@
 #include "factored/nonnegative_factors.h"
 
 #include <wavelet/base/parallel.h>
-#include <wavelet/base/trigonometry.h>
+#include <wavelet/base/sampling.h>
 
 #include <algorithm>
 #include <cassert>
@@ -47,14 +47,6 @@ Vec3 half_vector(float s, float phi) {
   sine_cosine(phi, sine, cosine);
   const float sin_theta = 2 * std::sqrt(s * (1 - s));
   return {sin_theta * cosine, sin_theta * sine, 1 - 2 * s};
-}
-
-Vec3 cosine_direction(const Vec2& u) {
-  float sine = 0;
-  float cosine = 1;
-  sine_cosine(2 * pi * u.y(), sine, cosine);
-  const float r = std::sqrt(u.x());
-  return {r * cosine, r * sine, std::sqrt(1 - u.x())};
 }
 
 std::vector<float> column(const Matrix& m, std::size_t index) {
@@ -208,7 +200,7 @@ FactoredBrdf::View FactoredBrdf::view(const Vec3& local_wo) const {
 
 FactoredBrdf::Sample FactoredBrdf::sample(const View& view, const Vec2& u) const {
   if (u.x() < cosine_share) {
-    const Vec3 wi = cosine_direction({u.x() / cosine_share, u.y()});
+    const Vec3 wi = sample_cosine_hemisphere({u.x() / cosine_share, u.y()});
     return {wi, pdf(view, wi)};
   }
   float rest = std::min((u.x() - cosine_share) / (1 - cosine_share), below_one);
@@ -255,7 +247,7 @@ float FactoredBrdf::half_vector_density(const View& view, const Cell& cell) cons
 
 float FactoredBrdf::density(const View& view, const Vec3& wi, const Cell& cell, float cos_d) const {
   const float mirrored = half_vector_density(view, cell) / (4 * std::max(cos_d, 1e-6F));
-  return cosine_share * std::max(0.0F, wi.z()) / pi + (1 - cosine_share) * mirrored;
+  return cosine_share * cosine_hemisphere_pdf(wi) + (1 - cosine_share) * mirrored;
 }
 
 float FactoredBrdf::pdf(const View& view, const Vec3& local_wi) const {

@@ -1,7 +1,7 @@
 #include "maps/map_kernel.h"
 
-#include "analytic/elementary.h"
-
+#include <wavelet/base/elementary.h>
+#include <wavelet/base/hash.h>
 #include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
@@ -23,12 +23,6 @@ double radical_inverse(int i) {
   for (int bit = 0; bit < 8; ++bit)
     reversed |= ((i >> bit) & 1) << (7 - bit);
   return reversed / 256.0;
-}
-
-std::uint32_t mix(std::uint32_t x) {
-  x = (x ^ (x >> 16U)) * 0x7feb352dU;
-  x = (x ^ (x >> 15U)) * 0x846ca68bU;
-  return x ^ (x >> 16U);
 }
 
 constexpr float orders[4][4] = {{0, 2, 3, 1}, {2, 0, 1, 3}, {3, 1, 0, 2}, {1, 3, 2, 0}};
@@ -82,7 +76,7 @@ void MapKernel::push_tile(Job& job, int tile_x, int tile_y) const {
   for (int y = tile_y; y < std::min(tile_y + tile_size, size); ++y) {
     for (int x = tile_x; x < std::min(tile_x + tile_size, size); ++x) {
       const auto pixel = static_cast<std::uint32_t>(y * size + x);
-      const std::uint32_t bits = mix(pixel);
+      const std::uint32_t bits = hash_bits(pixel);
       job.waiting.push_back({static_cast<float>(x) * side, static_cast<float>(y) * side, side,
                              static_cast<float>(bits >> 8U) * 0x1p-24F, 0.25F, pixel, bits & 3U});
     }

@@ -1,6 +1,6 @@
 #include <brdf/bilateral.h>
 
-#include "analytic/elementary.h"
+#include <wavelet/base/elementary.h>
 
 #include <cmath>
 

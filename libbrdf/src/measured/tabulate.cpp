@@ -1,7 +1,7 @@
 #include <brdf/tabulate.h>
 
-#include "analytic/elementary.h"
-
+#include <wavelet/base/elementary.h>
+#include <wavelet/base/hash.h>
 #include <wavelet/base/parallel.h>
 
 #include <algorithm>
@@ -19,19 +19,11 @@ Angles cell_angles(const SineCosine& h, const SineCosine& d, const SineCosine& p
   return {along - across, along + across, h.sine, h.cosine, d.cosine};
 }
 
-/// Well-mixed bits of a counter (splitmix64).
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15ULL;
-  x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31U);
-}
-
 /// Nearly normal, mean 0 and variance 1: the sum of twelve uniform 16-bit numbers.
 double normal_deviate(std::uint64_t seed, std::uint64_t counter) {
   std::uint64_t sum = 0;
   for (std::uint64_t i = 0; i < 3; ++i) {
-    const std::uint64_t bits = mix(mix(seed) ^ (3 * counter + i));
+    const std::uint64_t bits = splitmix64(splitmix64(seed) ^ (3 * counter + i));
     sum += (bits & 0xffffU) + ((bits >> 16U) & 0xffffU) + ((bits >> 32U) & 0xffffU) + (bits >> 48U);
   }
   return (static_cast<double>(sum) + 6) / 65536 - 6;

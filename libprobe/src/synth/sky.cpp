@@ -1,8 +1,8 @@
 #include "synth/sky.h"
 
 #include "file/colour_space.h"
-#include "mapping/elementary.h"
 
+#include <wavelet/base/elementary.h>
 #include <wavelet/base/trigonometry.h>
 
 #include <algorithm>

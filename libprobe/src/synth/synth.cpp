@@ -4,6 +4,7 @@
 
 #include "mapping/mapping_lanes.h"
 
+#include <wavelet/base/hash.h>
 #include <wavelet/base/parallel.h>
 
 #include <algorithm>
@@ -19,11 +20,8 @@ public:
   explicit Chance(std::uint64_t seed) : m_state(seed) {}
 
   float between(float low, float high) {
-    m_state += 0x9e3779b97f4a7c15U;
-    std::uint64_t z = m_state;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    z ^= z >> 31U;
+    const std::uint64_t z = splitmix64(m_state);
+    m_state += splitmix64_increment;
     return low + (high - low) * static_cast<float>(z >> 40U) * 0x1p-24F;
   }
 
