@@ -1,6 +1,6 @@
 #include "picture.h"
 
-#include <probe/image.h>
+#include <wavelet/base/image.h>
 
 namespace haarlight::probe::reader {
 namespace {

@@ -5,8 +5,8 @@
 // lies in the disk r ≤ 1; the slivers of the disk in pixels whose centre lies outside show the
 // nearest pixel that belongs. Captions and frames in the corners contribute nothing.
 
-#include <probe/image.h>
 #include <probe/mapping.h>
+#include <wavelet/base/image.h>
 
 #include <span>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 // Pictures of any format, brought to one form: linear RGB, finite, not negative.
 
-#include <probe/image.h>
+#include <wavelet/base/image.h>
 
 #include <string>
 #include <vector>

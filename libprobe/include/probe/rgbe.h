@@ -17,7 +17,7 @@
 // File Format" in Radiance's file format manual (doc/filefmts), and its reader (src/common/color.c,
 // header.c, resolu.c); GAMMA as in Walter's rgbe.c.
 
-#include <probe/image.h>
+#include <wavelet/base/image.h>
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 // Made-up probes: analytic radiance by direction, drawn as angular maps.
 
-#include <probe/image.h>
+#include <wavelet/base/image.h>
 
 #include <cstdint>
 #include <memory>

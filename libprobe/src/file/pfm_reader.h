@@ -6,7 +6,7 @@
 // The header ends with one white-space character, or with CR LF if its first line does.
 // Reference: Debevec, "PFM Portable FloatMap Image Format", 2001.
 
-#include <probe/image.h>
+#include <wavelet/base/image.h>
 
 #include <span>
 #include <string>

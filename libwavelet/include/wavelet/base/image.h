@@ -1,12 +1,12 @@
 #pragma once
-// The picture a probe is made of, before anything is said about directions.
+// A rectangular RGB raster in memory: probes, pictures and what their readers and writers exchange.
 
 #include <wavelet/base/geometry.h>
 
 #include <cstddef>
 #include <vector>
 
-namespace haarlight::probe {
+namespace haarlight {
 
 /// Linear RGB (Rec. 709 primaries), interleaved, row 0 at the top, column 0 at the left.
 struct Image {
@@ -15,7 +15,7 @@ struct Image {
   std::vector<float> rgb;
 
   Image() = default;
-  /// A black picture.
+  /// All black.
   Image(int columns, int rows)
       : width(columns), height(rows),
         rgb(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
@@ -28,7 +28,4 @@ struct Image {
   void set(int x, int y, const Rgb& value) { Eigen::Map<Rgb>(rgb.data() + offset(x, y)) = value; }
 };
 
-/// Pixels a picture may have at most (16384 × 8192); readers refuse more before they allocate.
-inline constexpr std::size_t max_pixels = std::size_t{1} << 27;
-
-} // namespace haarlight::probe
+} // namespace haarlight

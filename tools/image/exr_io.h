@@ -1,13 +1,17 @@
 #pragma once
-// OpenEXR's streams over the toolkit's files.
-// For the sources of this folder only: it shows OpenEXR's headers.
+// OpenEXR over the toolkit's files: streams, threads, errors, and the choice and reading of
+// colours. For the sources of this folder only: it shows OpenEXR's headers.
 
 #include <wavelet/base/error.h>
+#include <wavelet/base/image.h>
 #include <wavelet/file/input_file.h>
 #include <wavelet/file/output_file.h>
 
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -55,9 +59,6 @@ private:
   std::uint64_t m_position = 0;
 };
 
-/// A check for OutputFile::commit: the file opens and is complete. @throws Error(Output)
-void check_exr_complete(const std::string& temporary_path);
-
 /// Calls `body`, turning what OpenEXR throws into Error(Input) for `path`.
 template <class F>
 auto with_input_errors(const std::string& path, F&& body) {
@@ -71,5 +72,30 @@ auto with_input_errors(const std::string& path, F&& body) {
     throw_input_error(path, std::string("cannot be decoded: ") + error.what());
   }
 }
+
+/// The channels that hold red, green and blue; a grey image has one for all three.
+struct RgbChannels {
+  std::array<std::string, 3> names;
+
+  bool grey() const { return names[0] == names[1]; }
+};
+
+/// R, G and B; else those of the only layer that has all three (`beauty.R` …); else Y.
+/// @throws Error(Input) that lists the channels if there are none or several such layers, and for
+///         channels that are subsampled or of integers, luminance with chroma, and
+///         chromaticities other than those of Rec. 709
+RgbChannels choose_channels(const Imf::Header& header, const std::string& path);
+
+/// The size of the display window, which is the picture.
+/// @throws Error(Input) if it is empty, too large, or shows nothing of the data window
+Imath::V2i display_size(const Imf::Header& header, const std::string& path);
+
+/// The picture in the display window: pixels outside of the data window are black.
+/// @param header that of the file, by read_exr_header()
+/// @throws Error(Input)
+Image read_rgb(const InputFile& file, const Imf::Header& header);
+
+/// Copies the first channel of grey pixels to the other two.
+void spread_grey(std::vector<float>& rgb);
 
 } // namespace haarlight::image

@@ -1,20 +1,71 @@
-#include <image/exr_pixels.h>
+#include <image/exr_io.h>
 
-#include <image/exr_chunks.h>
-#include <image/exr_header.h>
-#include <image/exr_stream.h>
+#include <image/exr_check.h>
+#include <image/image_exr.h>
 
+#include <wavelet/base/parallel.h>
+
+#include <Iex.h>
 #include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstring>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 namespace haarlight::image {
+
+ExrOutputStream::ExrOutputStream(OutputFile& file)
+    : Imf::OStream(file.path().c_str()), m_file(file) {}
+
+void ExrOutputStream::write(const char bytes[], int count) {
+  if (m_error)
+    return;
+  try {
+    m_file.write(bytes, static_cast<std::size_t>(count));
+    m_size = std::max(m_size, m_file.position());
+  } catch (const Error& error) {
+    m_error = error;
+  }
+}
+
+void ExrOutputStream::rethrow() const {
+  if (m_error)
+    throw Error(*m_error);
+}
+
+int start_exr_threads() {
+  try {
+    Imf::setGlobalThreadCount(thread_count());
+    return thread_count();
+  } catch (const std::system_error&) {
+    Imf::setGlobalThreadCount(0);
+    return 0;
+  }
+}
+
+ExrInputStream::ExrInputStream(const InputFile& file)
+    : Imf::IStream(file.path().c_str()), m_bytes(file.bytes()) {}
+
+bool ExrInputStream::read(char bytes[], int count) {
+  const auto wanted = static_cast<std::uint64_t>(count);
+  if (count < 0 || m_position > m_bytes.size() || wanted > m_bytes.size() - m_position)
+    throw Iex::InputExc("the file ends too early");
+  std::memcpy(bytes, m_bytes.data() + m_position, wanted);
+  m_position += wanted;
+  return m_position < m_bytes.size();
+}
+
 namespace {
 
 /// Pixels of a display window beyond those of the data window: a cropped 4K frame fits.
@@ -77,10 +128,10 @@ std::pair<std::int64_t, std::int64_t> size_of(const Imath::Box2i& window) {
           std::int64_t{window.max.y} - window.min.y + 1};
 }
 
-Picture read_data_window(const InputFile& file, const Imath::Box2i& window,
-                         const RgbChannels& channels) {
+Image read_data_window(const InputFile& file, const Imath::Box2i& window,
+                       const RgbChannels& channels) {
   const auto [width, height] = size_of(window);
-  Picture picture(static_cast<int>(width), static_cast<int>(height));
+  Image picture(static_cast<int>(width), static_cast<int>(height));
   Imf::FrameBuffer frame;
   const std::size_t step = 3 * sizeof(float);
   for (std::size_t c = 0; c < (channels.grey() ? 1U : 3U); ++c)
@@ -99,9 +150,9 @@ Picture read_data_window(const InputFile& file, const Imath::Box2i& window,
 }
 
 /// The part of a picture of the window `from` that lies in the window `to`, black around it.
-Picture moved(const Picture& picture, const Imath::Box2i& from, const Imath::Box2i& to) {
+Image moved(const Image& picture, const Imath::Box2i& from, const Imath::Box2i& to) {
   const auto [width, height] = size_of(to);
-  Picture result(static_cast<int>(width), static_cast<int>(height));
+  Image result(static_cast<int>(width), static_cast<int>(height));
   const int x0 = std::max(from.min.x, to.min.x);
   const int x1 = std::min(from.max.x, to.max.x);
   for (int y = std::max(from.min.y, to.min.y); y <= std::min(from.max.y, to.max.y); ++y)
@@ -151,10 +202,10 @@ Imath::V2i display_size(const Imf::Header& header, const std::string& path) {
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
-Picture read_rgb(const InputFile& file, const Imf::Header& header) {
+Image read_rgb(const InputFile& file, const Imf::Header& header) {
   display_size(header, file.path());
   const RgbChannels channels = choose_channels(header, file.path());
-  Picture picture = read_data_window(file, header.dataWindow(), channels);
+  Image picture = read_data_window(file, header.dataWindow(), channels);
   if (header.dataWindow() == header.displayWindow())
     return picture;
   return moved(picture, header.dataWindow(), header.displayWindow());
@@ -163,6 +214,82 @@ Picture read_rgb(const InputFile& file, const Imf::Header& header) {
 void spread_grey(std::vector<float>& rgb) {
   for (std::size_t i = 0; i < rgb.size(); i += 3)
     rgb[i + 2] = rgb[i + 1] = rgb[i];
+}
+
+namespace {
+
+Imf::Header header_of(const ExrImage& image) {
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.lineOrder() = Imf::INCREASING_Y;
+  for (const ExrChannel& channel : image.channels)
+    header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+  for (const auto& [name, text] : image.texts)
+    header.insert(name, Imf::StringAttribute(text));
+  for (const auto& [name, number] : image.numbers)
+    header.insert(name, Imf::DoubleAttribute(number));
+  for (const auto& [name, number] : image.integers)
+    header.insert(name, Imf::IntAttribute(number));
+  return header;
+}
+
+/// OpenEXR wants writable memory even where it only reads.
+Imf::Slice slice_of(const float* first, int stride, const Imath::V2i& origin, int width,
+                    int height) {
+  const std::size_t step = sizeof(float) * static_cast<std::size_t>(stride);
+  return Imf::Slice::Make(Imf::FLOAT, first, origin, width, height, step,
+                          step * static_cast<std::size_t>(width));
+}
+
+Imf::FrameBuffer frame_of(const ExrImage& image) {
+  Imf::FrameBuffer frame;
+  for (const ExrChannel& channel : image.channels)
+    frame.insert(channel.name, slice_of(channel.first, channel.stride, Imath::V2i(0, 0),
+                                        image.width, image.height));
+  return frame;
+}
+
+/// A check for OutputFile::commit: the file opens and is complete. @throws Error(Output)
+void check_exr_complete(const std::string& temporary_path) {
+  try {
+    Imf::InputFile file(temporary_path.c_str());
+    if (file.isComplete())
+      return;
+  } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): said below
+  }
+  throw_output_error(temporary_path, "is incomplete after writing");
+}
+
+} // namespace
+
+void commit_exr(OutputFile& file) { file.commit(check_exr_complete); }
+
+void write_exr(const std::string& path, const ExrImage& image) {
+  assert(image.width > 0 && image.height > 0 && !image.channels.empty());
+  const int threads = start_exr_threads();
+  OutputFile file(path);
+  ExrOutputStream stream(file);
+  {
+    Imf::OutputFile output(stream, header_of(image), threads);
+    output.setFrameBuffer(frame_of(image));
+    output.writePixels(image.height);
+  }
+  stream.rethrow();
+  commit_exr(file);
+}
+
+void write_exr(const std::string& path, const Image& picture) {
+  const float* first = picture.rgb.data();
+  ExrImage image;
+  image.width = picture.width;
+  image.height = picture.height;
+  image.channels = {{"R", first, 3}, {"G", first + 1, 3}, {"B", first + 2, 3}};
+  write_exr(path, image);
+}
+
+Image read_exr(const std::string& path) {
+  const InputFile file(path);
+  return read_rgb(file, read_exr_header(file));
 }
 
 } // namespace haarlight::image
