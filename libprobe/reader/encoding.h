@@ -1,8 +1,8 @@
 #pragma once
 // How stored sample values become linear Rec. 709 colours.
 
+#include "decoder.h"
 #include "file/colour_space.h"
-#include "picture.h"
 
 #include <functional>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 // Which channels of an OpenEXR file are the colours.
 
-#include "picture.h"
+#include "decoder.h"
 
 #include <OpenEXR/ImfMultiPartInputFile.h>
 

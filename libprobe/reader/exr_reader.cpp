@@ -1,8 +1,8 @@
 // OpenEXR files: the colours of one layer, placed in the display window.
 
+#include "decoder.h"
 #include "exr_channels.h"
 #include "file/colour_space.h"
-#include "picture.h"
 
 #include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -207,7 +207,7 @@ std::optional<Chromaticities> chromaticities_of(const Imf::Header& header) {
 }
 
 /// whiteLuminance and adoptedNeutral are left alone: they scale a display, not the radiance.
-void convert_primaries(const Imf::Header& header, Picture& picture) {
+void convert_primaries(const Imf::Header& header, DecodedImage& picture) {
   const auto primaries = chromaticities_of(header);
   if (!primaries)
     return;
@@ -224,7 +224,7 @@ void convert_primaries(const Imf::Header& header, Picture& picture) {
       "colours were converted to Rec. 709 from the primaries of its chromaticities");
 }
 
-Picture read_file(const Task& task) {
+DecodedImage read_file(const Task& task) {
   Imf::Header::setMaxImageSize(longest_side, longest_side);
   Imf::Header::setMaxTileSize(longest_side, longest_side);
   MemoryStream stream(task.bytes);
@@ -241,7 +241,7 @@ Picture read_file(const Task& task) {
 
   const bool chroma =
       channels.red.empty() && !channels.red_chroma.empty() && !channels.blue_chroma.empty();
-  Picture picture;
+  DecodedImage picture;
   Image data = chroma ? read_luminance_chroma(task, file, channels) : read_colours(file, channels);
   picture.image = place(std::move(data), header.dataWindow(), header.displayWindow());
   if (chroma || !channels.red.empty())
@@ -266,7 +266,7 @@ std::string message_of(const std::exception& error) {
 
 } // namespace
 
-Picture read_exr(const Task& task) {
+DecodedImage read_exr(const Task& task) {
   try {
     return read_file(task);
   } catch (const Iex::BaseExc& error) {

@@ -1,7 +1,7 @@
 // JPEG files, by libjpeg.
 
+#include "decoder.h"
 #include "encoding.h"
-#include "picture.h"
 
 #include <csetjmp>
 #include <cstdio>
@@ -105,7 +105,7 @@ Encoding encoding_of(JpegFile& file) {
 
 } // namespace
 
-Picture read_jpeg(const Task& task) {
+DecodedImage read_jpeg(const Task& task) {
   refuse_choice(task.choice);
   JpegFile file(task.bytes);
   file.read_header();
@@ -124,7 +124,7 @@ Picture read_jpeg(const Task& task) {
   file.start();
   const int channels = file.info.output_components;
   RowConverter converter(std::move(encoding), {.samples = channels, .colours = channels});
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(width), static_cast<int>(height));
   std::vector<JSAMPLE> row(width * static_cast<std::size_t>(channels));
   for (int y = 0; y < picture.image.height; ++y) {

@@ -1,10 +1,9 @@
 // haarlight_read_image: decodes the image file on its standard input and writes the pixels to its
 // standard output (src/reader_protocol.h). Started by the library, not by users.
 
-#include "picture.h"
+#include "decoder.h"
 
-#include "file/picture_format.h"
-#include "file/reader_protocol.h"
+#include "file/image_formats.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -63,12 +62,12 @@ std::span<const std::byte> map_input() {
   return {static_cast<const std::byte*>(address), size};
 }
 
-Picture read(const Task& task, std::string_view format) {
-  if (format == format_name(PictureFormat::OpenExr))
+DecodedImage read(const Task& task, std::string_view format) {
+  if (format == format_name(ImageFormat::OpenExr))
     return read_exr(task);
-  if (format == format_name(PictureFormat::Tiff))
+  if (format == format_name(ImageFormat::Tiff))
     return read_tiff(task);
-  if (format == format_name(PictureFormat::Png))
+  if (format == format_name(ImageFormat::Png))
     return read_png(task);
   return read_jpeg(task);
 }
@@ -94,7 +93,7 @@ void send_text(std::uint32_t failed, std::string text, int width = 0, int height
   send(text.data(), text.size());
 }
 
-void send(const Picture& picture) {
+void send(const DecodedImage& picture) {
   std::string notes;
   for (const std::string& note : picture.notes)
     notes += note + '\n';

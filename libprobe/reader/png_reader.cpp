@@ -1,7 +1,7 @@
 // PNG files, by libpng.
 
+#include "decoder.h"
 #include "encoding.h"
-#include "picture.h"
 
 #include <png.h>
 
@@ -155,7 +155,7 @@ unsigned orientation_of(const PngFile& file) {
 
 } // namespace
 
-Picture read_png(const Task& task) {
+DecodedImage read_png(const Task& task) {
   refuse_choice(task.choice);
   PngFile file(task.bytes);
   file.read_header();
@@ -177,7 +177,7 @@ Picture read_png(const Task& task) {
                             .colours = channels >= 3 ? 3 : 1,
                             .alpha = channels % 2 == 0 ? Alpha::Unassociated : Alpha::None};
   RowConverter converter(encoding_of(file), layout);
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(width), static_cast<int>(height));
   const bool wide = ::png_get_bit_depth(file.png, file.info) == 16;
   for (std::size_t y = 0; y < height; ++y) {

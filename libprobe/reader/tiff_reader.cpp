@@ -1,7 +1,7 @@
 // TIFF files, by libtiff.
 
+#include "decoder.h"
 #include "encoding.h"
-#include "picture.h"
 
 #include <OpenEXR/ImfRgba.h>
 
@@ -289,10 +289,10 @@ void convert_rows(RowConverter& converter, const T* samples, const TiffHeader& h
 }
 
 /// Grey and RGB of whole bytes.
-Picture read_samples(TIFF* tiff, const TiffHeader& h) {
+DecodedImage read_samples(TIFF* tiff, const TiffHeader& h) {
   RowConverter converter(encoding_of(tiff, h), layout_of(tiff, h));
   const auto raw = ::TIFFIsTiled(tiff) != 0 ? read_tiles(tiff, h) : read_strips(tiff, h);
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(h.width), static_cast<int>(h.height));
   if (h.format == SAMPLEFORMAT_IEEEFP && h.bits != 32)
     convert_rows(converter, (h.bits == 16 ? floats_of<half>(raw) : floats_of<double>(raw)).data(),
@@ -311,7 +311,7 @@ Picture read_samples(TIFF* tiff, const TiffHeader& h) {
 
 /// LogLuv and LogL: CIE XYZ, or Y alone, as floats (G. Ward Larson, "LogLuv Encoding for
 /// Full-Gamut, High-Dynamic Range Images", 1998).
-Picture read_log(TIFF* tiff, TiffHeader h) {
+DecodedImage read_log(TIFF* tiff, TiffHeader h) {
   ::TIFFSetField(tiff, TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT);
   h.samples = h.photometric == PHOTOMETRIC_LOGLUV ? 3 : 1;
   h.bits = 32;
@@ -319,7 +319,7 @@ Picture read_log(TIFF* tiff, TiffHeader h) {
   h.planar = PLANARCONFIG_CONTIG;
   const auto raw = ::TIFFIsTiled(tiff) != 0 ? read_tiles(tiff, h) : read_strips(tiff, h);
   const std::vector<float> values = floats_of<float>(raw);
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(h.width), static_cast<int>(h.height));
   for (std::size_t i = 0; i < picture.image.rgb.size() / 3; ++i) {
     const float* v = values.data() + i * h.samples;
@@ -327,14 +327,14 @@ Picture read_log(TIFF* tiff, TiffHeader h) {
     if (h.samples == 1)
       rgb.setConstant(v[0]);
     else
-      rgb = rec709_from_xyz({v[0], v[1], v[2]}).cast<float>();
+      rgb = convert_colour(rec709_from_xyz(), {v[0], v[1], v[2]}).cast<float>();
   }
   picture.notes.emplace_back("CIE XYZ was converted to Rec. 709, without chromatic adaptation");
   return picture;
 }
 
 /// Palettes, YCbCr and grey below 8 bits, which libtiff itself makes 8-bit RGB.
-Picture read_display(TIFF* tiff, const TiffHeader& h) {
+DecodedImage read_display(TIFF* tiff, const TiffHeader& h) {
   char message[1024] = {};
   if (::TIFFRGBAImageOK(tiff, message) == 0)
     throw Refusal("cannot be decoded: libtiff: " + std::string(message));
@@ -347,7 +347,7 @@ Picture read_display(TIFF* tiff, const TiffHeader& h) {
   if (::TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &length, &profile) != 0)
     encoding = icc_encoding({static_cast<const std::byte*>(profile), length});
   RowConverter converter(std::move(encoding), {.samples = 3, .colours = 3});
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(h.width), static_cast<int>(h.height));
   std::vector<std::uint8_t> row(std::size_t{3} * h.width);
   for (std::uint32_t y = 0; y < h.height; ++y) {
@@ -376,7 +376,7 @@ bool has_plain_samples(const TiffHeader& h) {
          (h.bits == 8 || h.bits == 16 || h.bits == 32);
 }
 
-Picture decode(TIFF* tiff, const TiffHeader& h) {
+DecodedImage decode(TIFF* tiff, const TiffHeader& h) {
   if (h.photometric == PHOTOMETRIC_LOGLUV || h.photometric == PHOTOMETRIC_LOGL)
     return read_log(tiff, h);
   if (has_plain_samples(h))
@@ -395,7 +395,7 @@ Picture decode(TIFF* tiff, const TiffHeader& h) {
 
 } // namespace
 
-Picture read_tiff(const Task& task) {
+DecodedImage read_tiff(const Task& task) {
   ::TIFFSetErrorHandler(on_error);
   ::TIFFSetWarningHandler(nullptr);
   MemoryFile file{task.bytes};
@@ -412,7 +412,7 @@ Picture read_tiff(const Task& task) {
   check_file_size(task, pixels * header.samples * header.bits / 8,
                   largest_ratio(header.compression));
   allow_memory(2 * 12 * pixels + 4 * raw);
-  Picture picture = decode(tiff.get(), header);
+  DecodedImage picture = decode(tiff.get(), header);
   picture.image = upright(std::move(picture.image), header.orientation);
   return picture;
 }

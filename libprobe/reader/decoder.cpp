@@ -1,6 +1,4 @@
-#include "picture.h"
-
-#include <wavelet/base/image.h>
+#include "decoder.h"
 
 namespace haarlight::probe::reader {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // What the decoders of the reader program share: their task, their result, and its checks.
 
-#include <probe/read_image.h>
+#include "file/external_reader.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,17 +25,11 @@ struct Task {
   ImageChoice choice;
 };
 
-/// Linear Rec. 709, top row first.
-struct Picture {
-  Image image;
-  std::vector<std::string> notes;
-};
-
 // The decoders. Each throws Refusal, or dies by a fault of a decoder's library.
-Picture read_exr(const Task& task);
-Picture read_tiff(const Task& task);
-Picture read_png(const Task& task);
-Picture read_jpeg(const Task& task);
+DecodedImage read_exr(const Task& task);
+DecodedImage read_tiff(const Task& task);
+DecodedImage read_png(const Task& task);
+DecodedImage read_jpeg(const Task& task);
 
 /// Lets the process allocate this much more from now on.
 void allow_memory(std::uint64_t bytes);

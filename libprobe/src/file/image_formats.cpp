@@ -1,4 +1,4 @@
-#include "file/picture_format.h"
+#include "file/image_formats.h"
 
 #include <wavelet/base/error.h>
 
@@ -17,23 +17,23 @@ struct Magic {
   std::string_view bytes;
 };
 
-constexpr std::pair<Magic, PictureFormat> accepted[] = {
-    {{0, "\x76\x2f\x31\x01"sv}, PictureFormat::OpenExr},
-    {{0, "PF4"sv}, PictureFormat::Pfm},
-    {{0, "PF\n"sv}, PictureFormat::Pfm},
-    {{0, "PF\r"sv}, PictureFormat::Pfm},
-    {{0, "PF "sv}, PictureFormat::Pfm},
-    {{0, "PF\t"sv}, PictureFormat::Pfm},
-    {{0, "Pf\n"sv}, PictureFormat::Pfm},
-    {{0, "Pf\r"sv}, PictureFormat::Pfm},
-    {{0, "Pf "sv}, PictureFormat::Pfm},
-    {{0, "Pf\t"sv}, PictureFormat::Pfm},
-    {{0, "II\x2a\0"sv}, PictureFormat::Tiff},
-    {{0, "MM\0\x2a"sv}, PictureFormat::Tiff},
-    {{0, "II\x2b\0"sv}, PictureFormat::Tiff},
-    {{0, "MM\0\x2b"sv}, PictureFormat::Tiff},
-    {{0, "\x89PNG\r\n\x1a\n"sv}, PictureFormat::Png},
-    {{0, "\xff\xd8\xff"sv}, PictureFormat::Jpeg},
+constexpr std::pair<Magic, ImageFormat> accepted[] = {
+    {{0, "\x76\x2f\x31\x01"sv}, ImageFormat::OpenExr},
+    {{0, "PF4"sv}, ImageFormat::Pfm},
+    {{0, "PF\n"sv}, ImageFormat::Pfm},
+    {{0, "PF\r"sv}, ImageFormat::Pfm},
+    {{0, "PF "sv}, ImageFormat::Pfm},
+    {{0, "PF\t"sv}, ImageFormat::Pfm},
+    {{0, "Pf\n"sv}, ImageFormat::Pfm},
+    {{0, "Pf\r"sv}, ImageFormat::Pfm},
+    {{0, "Pf "sv}, ImageFormat::Pfm},
+    {{0, "Pf\t"sv}, ImageFormat::Pfm},
+    {{0, "II\x2a\0"sv}, ImageFormat::Tiff},
+    {{0, "MM\0\x2a"sv}, ImageFormat::Tiff},
+    {{0, "II\x2b\0"sv}, ImageFormat::Tiff},
+    {{0, "MM\0\x2b"sv}, ImageFormat::Tiff},
+    {{0, "\x89PNG\r\n\x1a\n"sv}, ImageFormat::Png},
+    {{0, "\xff\xd8\xff"sv}, ImageFormat::Jpeg},
 };
 
 /// Formats that are refused, so that the message can name them.
@@ -78,7 +78,7 @@ bool matches(std::string_view text, const Magic& magic) {
 
 } // namespace
 
-PictureFormat detect_format(std::span<const std::byte> bytes, const std::string& path) {
+ImageFormat detect_format(std::span<const std::byte> bytes, const std::string& path) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
                               std::min<std::size_t>(bytes.size(), 32));
   for (const auto& [magic, format] : accepted)
@@ -91,17 +91,17 @@ PictureFormat detect_format(std::span<const std::byte> bytes, const std::string&
   throw_input_error(path, std::string("is no image of a known format; ") + accepted_formats);
 }
 
-const char* format_name(PictureFormat format) {
+const char* format_name(ImageFormat format) {
   switch (format) {
-  case PictureFormat::OpenExr:
+  case ImageFormat::OpenExr:
     return "OpenEXR";
-  case PictureFormat::Pfm:
+  case ImageFormat::Pfm:
     return "PFM";
-  case PictureFormat::Tiff:
+  case ImageFormat::Tiff:
     return "TIFF";
-  case PictureFormat::Png:
+  case ImageFormat::Png:
     return "PNG";
-  case PictureFormat::Jpeg:
+  case ImageFormat::Jpeg:
     return "JPEG";
   }
   return "";
