@@ -3,7 +3,7 @@
 #include <support/program.h>
 #include <support/words.h>
 
-#include <brdf/bilateral.h>
+#include <brdf/brdf_properties.h>
 #include <brdf/brdf_maps.h>
 #include <wavelet/base/out_of_memory.h>
 

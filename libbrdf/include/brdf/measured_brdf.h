@@ -5,7 +5,6 @@
 // Values are f_r in sr⁻¹, without cosine; 0 where wi or wo is not above the horizon.
 
 #include <brdf/half_difference.h>
-#include <brdf/large_pages.h>
 #include <brdf/merl_file.h>
 
 #include <wavelet/base/geometry.h>
@@ -13,8 +12,11 @@
 
 #include <array>
 #include <cstddef>
+#include <new>
 #include <string>
 #include <vector>
+
+#include <sys/mman.h>
 
 namespace haarlight::brdf {
 
@@ -50,6 +52,31 @@ struct HalfDifferenceBatch {
     theta_d_x[to] = theta_d_x[from];
     phi_d_y[to] = phi_d_y[from];
     phi_d_x[to] = phi_d_x[from];
+  }
+};
+
+/// Allocator for tables of many MB that are accessed at random: on large pages where the system has
+/// them.
+template <class T>
+struct LargePages {
+  using value_type = T;
+  static constexpr std::size_t page = std::size_t{1} << 21U;
+
+  LargePages() = default;
+  template <class U>
+  explicit LargePages(const LargePages<U>& /*other*/) {}
+
+  T* allocate(std::size_t count) {
+    void* memory = ::operator new (count * sizeof(T), std::align_val_t{page});
+    ::madvise(memory, count * sizeof(T), MADV_HUGEPAGE);
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t /*count*/) {
+    ::operator delete (memory, std::align_val_t{page});
+  }
+  template <class U>
+  bool operator==(const LargePages<U>& /*other*/) const {
+    return true;
   }
 };
 

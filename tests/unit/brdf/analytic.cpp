@@ -1,8 +1,7 @@
 #include "brdf_test_support.h"
 
 #include <brdf/analytic.h>
-#include <brdf/bilateral.h>
-#include <brdf/directional_albedo.h>
+#include <brdf/brdf_properties.h>
 #include <brdf/tabulate.h>
 
 using namespace haarlight;

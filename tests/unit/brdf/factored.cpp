@@ -1,4 +1,4 @@
-#include "factored/nonnegative_factors.h"
+#include "nonnegative_factors.h"
 #include "brdf_test_support.h"
 #include "chi_square.h"
 

@@ -1,4 +1,4 @@
-#include "factored/nonnegative_factors.h"
+#include "nonnegative_factors.h"
 
 #include <algorithm>
 #include <cmath>

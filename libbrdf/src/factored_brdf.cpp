@@ -1,6 +1,6 @@
 #include <brdf/factored_brdf.h>
 
-#include "factored/nonnegative_factors.h"
+#include "nonnegative_factors.h"
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/base/sampling.h>
