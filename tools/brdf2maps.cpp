@@ -3,8 +3,8 @@
 #include <support/program.h>
 #include <support/words.h>
 
-#include <brdf/brdf_properties.h>
 #include <brdf/brdf_maps.h>
+#include <brdf/brdf_properties.h>
 #include <wavelet/base/out_of_memory.h>
 
 #include <array>

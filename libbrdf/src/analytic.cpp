@@ -252,7 +252,8 @@ Vec3 AnalyticSampling::sample(const Vec2& u) const {
   if (u.x() < m_diffuse_probability)
     return sample_cosine_hemisphere({u.x() / m_diffuse_probability, u.y()});
   // Rounding may not bring the point to the square's edge.
-  const float rest = std::min((u.x() - m_diffuse_probability) / (1 - m_diffuse_probability), 0x1.fffffep-1F);
+  const float rest =
+      std::min((u.x() - m_diffuse_probability) / (1 - m_diffuse_probability), 0x1.fffffep-1F);
   return std::visit([&](const auto& m) { return sample_specular(m, m_wo, Vec2(rest, u.y())); },
                     *m_model);
 }

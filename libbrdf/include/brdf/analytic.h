@@ -77,9 +77,9 @@ Rgb evaluate(const AnalyticBrdf& model, const Angles& angles);
 /// f_r of two directions in the local frame, sr⁻¹.
 Rgb evaluate(const AnalyticBrdf& model, const Vec3& local_wi, const Vec3& local_wo);
 
-// Importance sampling of a model, by the routine published for it. A sample follows the diffuse part
-// (cosine-weighted) or the specular one, chosen with a fixed probability; the density is that of the
-// mixture. Specular parts:
+// Importance sampling of a model, by the routine published for it. A sample follows the diffuse
+// part (cosine-weighted) or the specular one, chosen with a fixed probability; the density is that
+// of the mixture. Specular parts:
 //   Ggx                half vectors from the visible normals (Heitz 2018)
 //   BlinnPhong         half vectors by (n + 1) / 2π cos^n θ_h (Pharr and Humphreys 2004, 15.5.1)
 //   Ward               half vectors by exp(−tan²θ_h / α²) / (π α² cos³θ_h) (Walter 2005, eqs. 6, 9)

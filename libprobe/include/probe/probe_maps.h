@@ -40,30 +40,36 @@ int default_map_size(const Probe& probe, int orientations);
 /// @param supersample 1 to 64: at least supersample² samples for each pixel
 wavelet::Map world_map(const Probe& probe, int size, int supersample);
 
-/// What the maps of a table are made from: a world map of their resolution, without the pixels that
-/// are far brighter than those around them, and points of light in place of these.
-struct WorldLevel {
-  struct Light {
-    Vec3 direction;
-    Rgb power; ///< radiance × solid angle
-  };
-  int size = 0;
-  std::vector<float> rgbx; ///< with a border one pixel wide, four floats for each pixel
-  std::vector<Light> lights;
+/// A pixel of a picture and its radiance.
+struct SourcePixel {
+  int x = 0;
+  int y = 0;
+  Rgb radiance = Rgb::Zero();
 };
 
-/// A world map made ready to be turned again and again.
+/// A world map prepared for being rotated. Pixels far brighter than those around them are added by
+/// the exact area that they cover of each pixel of the rotated map; the others are sampled.
+struct WorldLevel {
+  int size = 0;
+  float unit = 1;          ///< of the radiances below, so that their sums stay finite
+  std::vector<float> rgbw; ///< with a border one pixel wide: radiance and 1, or 0 for peaks
+  std::vector<SourcePixel> peaks;
+};
+
+/// A world map made ready to be rotated again and again.
 WorldLevel turning_level(const wavelet::Map& world);
 
-/// A level in another frame: the pixel at direction ω averages what the level's map shows at
-/// frame.to_outer(ω). Peaks keep their energy and are spread over the nearest pixels; all else is
-/// sampled 2 × 2 times for each of the level's pixels or each of the map's, whichever are smaller.
+/// A level in another frame: the pixel at direction ω is the average over its square of the level's
+/// map (nearest look-up) at frame.to_outer(ω), and never outside of the range of the level's
+/// values. Peaks are added by area. All else is sampled 2 × 2 times for each pixel of the level,
+/// and from 8 × 8 times (128² pixels and more) to 32 × 32 times (32² and fewer) for each of the
+/// map.
 /// @param size pixels along a side, a power of two ≥ 4
 wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size);
 
 /// The maps of a probe. make() is the world map, or the map of one cell of ω_r, averaged over the
-/// cell. The latter are made from the world map averaged down to their resolution, so that memory
-/// stays at that and one map for each thread.
+/// cell. The latter are made from the world map averaged down to about their resolution, so that
+/// memory stays at that and one map for each thread.
 class ProbeMaps : public wavelet::MapSource {
 public:
   /// @param source what is known of the probe's origin, the first entries of the set's provenance

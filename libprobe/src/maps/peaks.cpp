@@ -9,7 +9,6 @@ namespace {
 
 constexpr int reach = 2;
 constexpr int neighbours = (2 * reach + 1) * (2 * reach + 1) - 1;
-constexpr double brightest = 3; ///< times the mean of the neighbours
 
 /// Luminance of the pixels whose centre is in the map, black around them: pixels beyond the map may
 /// be copies of one within.
@@ -47,29 +46,37 @@ private:
   std::vector<float> m_value;
 };
 
-bool is_peak(const Probe& probe, const OwnLuminance& own, int x, int y) {
+bool is_peak(const Probe& probe, const OwnLuminance& own, int x, int y, double contrast) {
   const double value = luminance(probe.pixel(x, y));
   double around = own.sum_around(x, y);
   if (!probe.owns(x, y)) // a copy of one of those around, which must not justify it
     around = std::max(0.0, around - value);
-  return value > around * (brightest / neighbours);
+  return value > around * (contrast / neighbours);
 }
 
 } // namespace
 
-std::vector<PixelPlace> find_peaks(const Probe& probe) {
+std::vector<PixelPlace> find_peaks(const Probe& probe, double contrast) {
   const OwnLuminance own(probe);
   std::vector<std::vector<PixelPlace>> rows(static_cast<std::size_t>(probe.height()));
   parallel_for(rows.size(), [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < probe.width(); ++x)
-      if (is_peak(probe, own, x, y))
+      if (is_peak(probe, own, x, y, contrast))
         rows[row].push_back({x, y});
   });
   std::vector<PixelPlace> all;
   for (const auto& row : rows)
     all.insert(all.end(), row.begin(), row.end());
   return all;
+}
+
+float radiance_unit(const Probe& probe) {
+  float largest = 0;
+  for (int y = 0; y < probe.height(); ++y)
+    for (int x = 0; x < probe.width(); ++x)
+      largest = std::max(largest, probe.pixel(x, y).maxCoeff());
+  return largest > 0x1p96F ? 0x1p32F : 1.0F;
 }
 
 } // namespace haarlight::probe

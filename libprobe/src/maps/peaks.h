@@ -13,8 +13,13 @@ struct PixelPlace {
   int y = 0;
 };
 
-/// The pixels brighter than three times the mean of the 24 around them, row by row: lights of one
-/// or two pixels and the corners of wider ones.
-std::vector<PixelPlace> find_peaks(const Probe& probe);
+/// The pixels brighter than `contrast` times the mean of the 24 around them, row by row: lights of
+/// few pixels and the corners of wider ones. At 3 these are lights of up to 2 × 2 pixels, at 2 of
+/// up to 3 × 3.
+std::vector<PixelPlace> find_peaks(const Probe& probe, double contrast = 3);
+
+/// A power of two by which the probe's radiances are divided so that sums of samples stay finite; 1
+/// for all but extreme ones.
+float radiance_unit(const Probe& probe);
 
 } // namespace haarlight::probe

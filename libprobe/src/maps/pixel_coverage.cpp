@@ -14,9 +14,8 @@ namespace {
 /// Pixels of coarse probes are divided at first, so that none is wider than this part of the
 /// picture.
 constexpr int least_cells = 24;
-/// Cells are halved until their edges are straight to this part of the probe pixel's side. Their
-/// outlines include the middles of the edges, which leaves a quarter of it.
-constexpr float flatness = 0.004F;
+/// Cells are halved until their edges are straight enough, or so often. Their outlines include the
+/// middles of the edges, which leaves a quarter of the deviation.
 constexpr int most_halvings = 8;
 /// Slivers at the rim and at poles count as no narrower than this part of a mean pixel.
 constexpr float least_side = 0.1F;
@@ -28,8 +27,9 @@ template <class Map>
 class Patch {
 public:
   /// Pixel (x, y) of a picture of width × height.
-  Patch(int x, int y, int width, int height)
-      : m_pixel(x, y, width, height), m_u0(edge(x, width)), m_v0(edge(y, height)),
+  /// @param frame axes of the directions in those of the picture; must outlive this
+  Patch(int x, int y, int width, int height, const Frame& frame)
+      : m_frame(frame), m_pixel(x, y, width, height), m_u0(edge(x, width)), m_v0(edge(y, height)),
         m_u1(edge(x + 1, width)), m_v1(edge(y + 1, height)) {
     if (!Map::round || !m_pixel.crosses_rim())
       return;
@@ -48,7 +48,7 @@ public:
       uv = point_at_rim(m_swapped ? t : s, m_swapped ? s : t);
     Vec3 w;
     Map::direction(uv.x(), uv.y(), w.x(), w.y(), w.z());
-    return w;
+    return m_frame.to_local(w);
   }
 
 private:
@@ -68,6 +68,7 @@ private:
     return m_swapped ? Vec2(uv.y(), uv.x()) : uv;
   }
 
+  const Frame& m_frame;
   PixelRectangle m_pixel;
   float m_u0, m_v0, m_u1, m_v1;
   bool m_at_rim = false;
@@ -193,20 +194,22 @@ private:
 } // namespace
 
 void PixelCoverage::append(int x, int y, std::vector<CoveredPixel>& out) {
-  const int columns = (least_cells + m_width - 1) / m_width;
-  const int rows = (least_cells + m_height - 1) / m_height;
-  with_mapping(m_mapping, [&](auto map) {
+  const int columns = (least_cells + m_shape.width - 1) / m_shape.width;
+  const int rows = (least_cells + m_shape.height - 1) / m_shape.height;
+  with_mapping(m_shape.mapping, [&](auto map) {
     using Map = decltype(map);
-    const float u = (static_cast<float>(x) + 0.5F) / static_cast<float>(m_width);
-    const float v = (static_cast<float>(y) + 0.5F) / static_cast<float>(m_height);
-    const float mean_side = static_cast<float>(m_size) /
-                            std::sqrt(static_cast<float>(m_width) * static_cast<float>(m_height));
+    const float u = (static_cast<float>(x) + 0.5F) / static_cast<float>(m_shape.width);
+    const float v = (static_cast<float>(y) + 0.5F) / static_cast<float>(m_shape.height);
+    const float mean_side =
+        static_cast<float>(m_size) /
+        std::sqrt(static_cast<float>(m_shape.width) * static_cast<float>(m_shape.height));
     const float stretch = Map::density(u, v) / wavelet::sphere_area;
     const float side = mean_side * std::max(std::sqrt(stretch), least_side);
-    const float tolerance = std::max(flatness * side, rounding * static_cast<float>(m_size));
+    const float tolerance = std::max(m_flatness * side, rounding * static_cast<float>(m_size));
     for (int j = 0; j < rows; ++j)
       for (int i = 0; i < columns; ++i) {
-        const Patch<Map> patch(x * columns + i, y * rows + j, m_width * columns, m_height * rows);
+        const Patch<Map> patch(x * columns + i, y * rows + j, m_shape.width * columns,
+                               m_shape.height * rows, m_frame);
         if (!patch.is_empty())
           PatchClipper<Map>(patch, m_size, tolerance, m_raster, out).clip(0, 0, 1, 0);
       }

@@ -51,7 +51,7 @@ ProbeMaps::ProbeMaps(const Probe& probe, const MapOptions& options, const Proven
     return;
   }
   const wavelet::Map full = world_map(probe, default_map_size(probe, 1), m_options.supersample);
-  m_level = make_level(full, matching_level_size(m_options, full.size), m_options.size);
+  m_level = make_level(full, matching_level_size(m_options, full.size));
 }
 
 void ProbeMaps::describe(const Provenance& source, Mapping mapping) {
