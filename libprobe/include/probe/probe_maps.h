@@ -49,7 +49,7 @@ struct SourcePixel {
 
 /// A world map prepared for being rotated. Pixels far brighter than those around them are added by
 /// the exact area that they cover of each pixel of the rotated map; the others are sampled.
-struct WorldLevel {
+struct RotatableMap {
   int size = 0;
   float unit = 1;          ///< of the radiances below, so that their sums stay finite
   std::vector<float> rgbw; ///< with a border one pixel wide: radiance and 1, or 0 for peaks
@@ -57,7 +57,7 @@ struct WorldLevel {
 };
 
 /// A world map made ready to be rotated again and again.
-WorldLevel turning_level(const wavelet::Map& world);
+RotatableMap make_rotatable(const wavelet::Map& world);
 
 /// A level in another frame: the pixel at direction ω is the average over its square of the level's
 /// map (nearest look-up) at frame.to_outer(ω), and never outside of the range of the level's
@@ -65,7 +65,7 @@ WorldLevel turning_level(const wavelet::Map& world);
 /// and from 8 × 8 times (128² pixels and more) to 32 × 32 times (32² and fewer) for each of the
 /// map.
 /// @param size pixels along a side, a power of two ≥ 4
-wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size);
+wavelet::Map rotate_map(const RotatableMap& level, const Frame& frame, int size);
 
 /// The maps of a probe. make() is the world map, or the map of one cell of ω_r, averaged over the
 /// cell. The latter are made from the world map averaged down to about their resolution, so that
@@ -87,7 +87,7 @@ private:
   Rgb m_integral;
   wavelet::SetInfo m_info;
   wavelet::Map m_world; ///< for one orientation
-  WorldLevel m_level;   ///< for more
+  RotatableMap m_level;   ///< for more
 };
 
 } // namespace haarlight::probe
