@@ -76,7 +76,7 @@ Rgb Ward::evaluate(const Angles& a) const {
 }
 
 Rgb Lafortune::evaluate(const Angles& a) const {
-  // ω_i·ω_o = cos 2θ_d; what its z product leaves is the tangential part.
+  // ω_i·ω_o = cos 2θ_d; the tangential part is the rest after the product of the z components.
   const double z_product = a.cos_i * a.cos_o;
   const double tangential = 2 * a.cos_d * a.cos_d - 1 - z_product;
   const double largest = std::max(std::abs(c_xy), std::abs(c_z));
@@ -206,7 +206,7 @@ Vec3 sample_specular(const Ggx& model, const Vec3& wo, const Vec2& u) {
   return mirror(wo, Vec3(alpha * h.x(), alpha * h.y(), std::max(1e-9F, h.z())).normalized());
 }
 
-/// Half vectors that are drawn look towards ω_o, so that only those above the horizon count.
+/// Sampled half vectors face ω_o, so only those above the horizon count.
 double specular_density(const Ggx& model, const Vec3& wo, const Vec3& wi) {
   const Angles a = angles_of(wi, wo);
   if (a.cos_h <= 0)

@@ -40,12 +40,13 @@ constexpr float bins2_per_radian = 8100.0F * 2.0F / pi;
 /// with the distance from it, where tables are smooth. Radians².
 constexpr float step2_at_peak = 0.03F;
 constexpr float step2_per_radian = 4.0F;
-/// At grazing angles lobes are cos θ_d times as wide; below this they are not followed.
+/// At grazing angles lobes are cos θ_d times as wide; narrower ones than at this cosine are not
+/// resolved.
 constexpr float lowest_cosine_d = 0.3F;
 
-/// Square of the sample spacing over that which the table asks for, the same for all normals of the
-/// cell: if finer samples were for some normals only, the average would lean towards the others.
-/// θ_h is at least half the angle between ω and z. A bin of θ_h is about (2k + 1) /
+/// Square of the sample spacing over the spacing that the table needs, the same for all normals of
+/// the cell: if finer samples were for some normals only, the average would lean towards the
+/// others. θ_h is at least half the angle between ω and z. A bin of θ_h is about (2k + 1) /
 /// bins2_per_radian wide; a step of θ_h is one of 2 cos θ_d in ω across the plane of incidence, and
 /// of 2 in it.
 inline float needed_resolution(float z, float wi_wo, float spacing) {
@@ -89,9 +90,9 @@ HAARLIGHT_CPU_CLONES void place_samples(SampleBatch& b) {
   angles.count = b.count;
 }
 
-// Filling a map: a quadtree of samples, worked off in batches.
+// A map is filled from a quadtree of samples, evaluated in batches.
 
-/// The cell of reflection angles and rolls that one map covers, radians.
+/// Range of reflection angles and rolls of one map, radians.
 struct ReflectionCell {
   double theta_begin, theta_end;
   double phi_begin, phi_end;
@@ -113,7 +114,7 @@ public:
 private:
   static constexpr int normal_count = 256;
 
-  /// A square waiting for its samples.
+  /// A square whose samples are pending.
   struct Square {
     float u, v, side;    ///< corner and size
     float offset;        ///< place in the cell, in [0, 1); its samples get (order + offset) / 4
@@ -126,7 +127,7 @@ private:
   void push_tile(Job& job, int tile_x, int tile_y) const;
   bool below_horizon(float u, float v, float side) const;
   void take_samples(Job& job) const;
-  void settle_samples(Job& job) const;
+  void accumulate_samples(Job& job) const;
   static void split(Job& job, const Square& parent, int sample);
 
   const MeasuredBrdf& m_brdf;
@@ -161,11 +162,11 @@ Eigen::Vector3d normal_at(double theta_r, double phi) {
   return {t.sine * p.cosine, t.sine * p.sine, t.cosine};
 }
 
-/// One map in the making.
+/// A map under construction.
 struct MapKernel::Job {
   Map map;
   std::vector<Float4> sums; ///< by pixel
-  std::vector<Square> waiting;
+  std::vector<Square> pending;
   SampleBatch batch;
   Square taken[squares_per_batch]; ///< those whose samples are in the batch
 
@@ -203,21 +204,21 @@ void MapKernel::push_tile(Job& job, int tile_x, int tile_y) const {
     for (int x = tile_x; x < std::min(tile_x + tile_size, size); ++x) {
       const auto pixel = static_cast<std::uint32_t>(y * size + x);
       const std::uint32_t bits = hash_bits(pixel);
-      job.waiting.push_back({static_cast<float>(x) * side, static_cast<float>(y) * side, side,
+      job.pending.push_back({static_cast<float>(x) * side, static_cast<float>(y) * side, side,
                              static_cast<float>(bits >> 8U) * 0x1p-24F, 0.25F, pixel, bits & 3U});
     }
   }
 }
 
-/// Fills the batch with the four samples each of the squares at the end of the list.
+/// Fills the batch with four samples for each of the last squares of the list.
 void MapKernel::take_samples(Job& job) const {
-  const auto squares = std::min<std::size_t>(job.waiting.size(), squares_per_batch);
+  const auto squares = std::min<std::size_t>(job.pending.size(), squares_per_batch);
   SampleBatch& b = job.batch;
   b.count = static_cast<int>(4 * squares);
   int i = 0;
   for (std::size_t k = 0; k < squares; ++k) {
-    const Square& s = job.taken[k] = job.waiting.back();
-    job.waiting.pop_back();
+    const Square& s = job.taken[k] = job.pending.back();
+    job.pending.pop_back();
     for (int quarter = 0; quarter < 4; ++quarter, ++i) {
       b.u[i] = s.u + s.side * ((quarter & 1) != 0 ? 0.75F : 0.25F);
       b.v[i] = s.v + s.side * ((quarter & 2) != 0 ? 0.75F : 0.25F);
@@ -231,43 +232,43 @@ void MapKernel::take_samples(Job& job) const {
   }
 }
 
-/// Splits the samples that are too coarse, looks the others up and adds them to their pixels.
-void MapKernel::settle_samples(Job& job) const {
+/// Splits the samples that are too coarse, and adds the others to their pixels.
+void MapKernel::accumulate_samples(Job& job) const {
   SampleBatch& b = job.batch;
   const float widest = width_per_side / static_cast<float>(job.map.size * m_supersample);
   float factors[batch_capacity];
   std::uint32_t pixels[batch_capacity];
-  int settled = 0;
+  int accumulated = 0;
   for (int i = 0; i < b.count; ++i) {
     const Square& s = job.taken[i / 4];
-    // The samples that would replace this one have other normals.
+    // Its children would have other normals, hence the wide margin.
     if (b.cosine[i] < -(radius_per_width * b.spacing[i] + 2 * m_cell_radius))
       continue;
     if (b.spacing[i] > widest * 1.001F || (b.resolution[i] > 1 && s.side > smallest_side)) {
       split(job, s, i);
     } else if (b.cosine[i] > 0) {
-      if (i != settled)
-        b.angles.move(i, settled);
-      factors[settled] = s.weight * (m_cosine ? b.cosine[i] : 1.0F);
-      pixels[settled++] = s.pixel;
+      if (i != accumulated)
+        b.angles.move(i, accumulated);
+      factors[accumulated] = s.weight * (m_cosine ? b.cosine[i] : 1.0F);
+      pixels[accumulated++] = s.pixel;
     }
   }
-  b.angles.count = settled;
+  b.angles.count = accumulated;
   Float4 values[batch_capacity];
   m_brdf.evaluate(b.angles, values);
-  for (int i = 0; i < settled;) {
+  for (int i = 0; i < accumulated;) {
     const std::uint32_t pixel = pixels[i];
     Float4 sum = job.sums[pixel];
-    for (; i < settled && pixels[i] == pixel; ++i)
+    for (; i < accumulated && pixels[i] == pixel; ++i)
       sum += values[i] * factors[i];
     job.sums[pixel] = sum;
   }
 }
 
-/// Queues the square that sample i of the batch, one of `parent`, stands for.
+/// Queues the quadrant of `parent` that sample i of the batch represents.
 void MapKernel::split(Job& job, const Square& parent, int i) {
   const float half = 0.5F * parent.side;
-  job.waiting.push_back({job.batch.u[i] - 0.5F * half, job.batch.v[i] - 0.5F * half, half,
+  job.pending.push_back({job.batch.u[i] - 0.5F * half, job.batch.v[i] - 0.5F * half, half,
                          0.25F * (orders[parent.order][i % 4] + parent.offset),
                          0.25F * parent.weight, parent.pixel, parent.order});
 }
@@ -282,10 +283,10 @@ Map MapKernel::make(int size) const {
                         side * tile_size))
         continue;
       push_tile(job, x, y);
-      while (!job.waiting.empty()) {
+      while (!job.pending.empty()) {
         take_samples(job);
         place_samples(job.batch);
-        settle_samples(job);
+        accumulate_samples(job);
       }
     }
   }
@@ -339,7 +340,7 @@ const char* const frame_convention =
 
 } // namespace
 
-std::optional<std::string> problem_of(const BrdfMapOptions& options) {
+std::optional<std::string> validate(const BrdfMapOptions& options) {
   const BrdfMapOptions o = complete(options);
   if (o.size < 2 || o.size > largest_size || (o.size & (o.size - 1)) != 0)
     return "map size must be a power of two from 2 to " + std::to_string(largest_size);
@@ -355,7 +356,7 @@ std::optional<std::string> problem_of(const BrdfMapOptions& options) {
 BrdfMaps::BrdfMaps(MeasuredBrdf brdf, const BrdfMapOptions& options)
     : m_brdf(std::move(brdf)), m_options(complete(options)),
       m_albedos(static_cast<std::size_t>(options.theta)) {
-  assert(!problem_of(options));
+  assert(!validate(options));
   describe(m_options);
   if (*m_options.fold == Fold::Mirrors)
     m_brdf = m_brdf.symmetrised();

@@ -65,7 +65,7 @@ Matrix image_of(std::span<const float> cells, std::size_t theta, std::size_t phi
   return image;
 }
 
-/// Scales to a sum of one; evenly if all are zero.
+/// Scales to a sum of one; equal values if all are zero.
 void normalise(std::span<float> values) {
   const double sum = std::accumulate(values.begin(), values.end(), 0.0);
   for (float& value : values)
@@ -160,9 +160,9 @@ void FactoredBrdf::factor(const Evaluate& evaluate) {
     for (std::size_t k = 0; k < inner; ++k) {
       u.push_back(column(parts.g, k));
       v.push_back(column(parts.f, k));
-      const float share = std::accumulate(v.back().begin(), v.back().end(), 0.0F);
+      const float scale = std::accumulate(v.back().begin(), v.back().end(), 0.0F);
       for (std::size_t r = 0; r < views; ++r)
-        m_weights[r * max_terms + u.size() - 1] = factors.f.row(r)[j] * share;
+        m_weights[r * max_terms + u.size() - 1] = factors.f.row(r)[j] * scale;
       normalise(u.back());
       normalise(v.back());
     }
@@ -199,11 +199,11 @@ FactoredBrdf::View FactoredBrdf::view(const Vec3& local_wo) const {
 }
 
 FactoredBrdf::Sample FactoredBrdf::sample(const View& view, const Vec2& u) const {
-  if (u.x() < cosine_share) {
-    const Vec3 wi = sample_cosine_hemisphere({u.x() / cosine_share, u.y()});
+  if (u.x() < cosine_fraction) {
+    const Vec3 wi = sample_cosine_hemisphere({u.x() / cosine_fraction, u.y()});
     return {wi, pdf(view, wi)};
   }
-  float rest = std::min((u.x() - cosine_share) / (1 - cosine_share), below_one);
+  float rest = std::min((u.x() - cosine_fraction) / (1 - cosine_fraction), below_one);
   const std::size_t term = choose_term(view, rest);
   const float turn = 2 * u.y() - 1;
   float around = std::min(std::abs(turn), below_one);
@@ -216,7 +216,7 @@ FactoredBrdf::Sample FactoredBrdf::sample(const View& view, const Vec2& u) const
   return {wi, density(view, wi, cell, std::abs(view.wo.dot(h)))};
 }
 
-/// Sets u to what is left of it in the term.
+/// Rescales u to [0, 1) within the term.
 std::size_t FactoredBrdf::choose_term(const View& view, float& u) const {
   const auto last = static_cast<std::size_t>(m_options.outer * m_options.inner) - 1;
   std::size_t term = 0;
@@ -247,7 +247,7 @@ float FactoredBrdf::half_vector_density(const View& view, const Cell& cell) cons
 
 float FactoredBrdf::density(const View& view, const Vec3& wi, const Cell& cell, float cos_d) const {
   const float mirrored = half_vector_density(view, cell) / (4 * std::max(cos_d, 1e-6F));
-  return cosine_share * cosine_hemisphere_pdf(wi) + (1 - cosine_share) * mirrored;
+  return cosine_fraction * cosine_hemisphere_pdf(wi) + (1 - cosine_fraction) * mirrored;
 }
 
 float FactoredBrdf::pdf(const View& view, const Vec3& local_wi) const {

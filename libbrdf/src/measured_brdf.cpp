@@ -64,7 +64,7 @@ namespace {
 /// Cells of one row of φ_d, padding included, in either kind of table.
 int row_length(int phi_d_bins) { return phi_d_bins + 2; }
 
-/// What a look-up reads: the cell of least indices, and the shares of the next ones.
+/// The cells of a look-up: the one of least indices, and the weights of the next ones.
 struct Stencil {
   int cell;
   float theta_h, theta_d, phi_d;
@@ -90,15 +90,15 @@ Stencil trilinear_stencil(const TablePosition<float>& place, int phi_d_bins) {
 
 } // namespace
 
-Float4 MeasuredBrdf::interpolate(int cell, float theta_h_share, float theta_d_share,
-                                 float phi_d_share) const {
+Float4 MeasuredBrdf::interpolate(int cell, float theta_h_weight, float theta_d_weight,
+                                 float phi_d_weight) const {
   const int next_d = row_length(m_phi_d_bins);
   const Cell* near = m_cells.data() + cell;
   const Cell* far = near + next_d * merl_theta_d_bins;
-  const auto mix = [](Float4 a, Float4 b, float share) { return a + share * (b - a); };
-  const auto row = [&](const Cell* c) { return mix(c[0].value, c[1].value, phi_d_share); };
-  const Float4 sum = mix(mix(row(near), row(near + next_d), theta_d_share),
-                         mix(row(far), row(far + next_d), theta_d_share), theta_h_share);
+  const auto lerp = [](Float4 a, Float4 b, float weight) { return a + weight * (b - a); };
+  const auto row = [&](const Cell* c) { return lerp(c[0].value, c[1].value, phi_d_weight); };
+  const Float4 sum = lerp(lerp(row(near), row(near + next_d), theta_d_weight),
+                          lerp(row(far), row(far + next_d), theta_d_weight), theta_h_weight);
   return sum[3] > 1e-6F ? sum / sum[3] : Float4{};
 }
 

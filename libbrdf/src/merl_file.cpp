@@ -37,9 +37,9 @@ Dimensions read_dimensions(const InputFile& file) {
   return dims;
 }
 
-/// Appends `name is N, must be M` if a dimension is not what it must be.
-void complain(std::string& text, bool good, const char* name, std::int32_t found,
-              const char* right) {
+/// Appends `name is N, must be M` for a wrong dimension.
+void append_mismatch(std::string& text, bool good, const char* name, std::int32_t found,
+                     const char* right) {
   if (!good)
     text += std::string(text.empty() ? "" : ", ") + name + " is " + std::to_string(found) +
             ", must be " + right;
@@ -47,10 +47,10 @@ void complain(std::string& text, bool good, const char* name, std::int32_t found
 
 void check_dimensions(const InputFile& file, const Dimensions& dims) {
   std::string text;
-  complain(text, dims.theta_h == merl_theta_h_bins, "theta_h", dims.theta_h, "90");
-  complain(text, dims.theta_d == merl_theta_d_bins, "theta_d", dims.theta_d, "90");
-  complain(text, dims.phi_d == merl_phi_d_bins || dims.phi_d == merl_unfolded_phi_d_bins, "phi_d",
-           dims.phi_d, "180 (or 360)");
+  append_mismatch(text, dims.theta_h == merl_theta_h_bins, "theta_h", dims.theta_h, "90");
+  append_mismatch(text, dims.theta_d == merl_theta_d_bins, "theta_d", dims.theta_d, "90");
+  append_mismatch(text, dims.phi_d == merl_phi_d_bins || dims.phi_d == merl_unfolded_phi_d_bins,
+                  "phi_d", dims.phi_d, "180 (or 360)");
   if (!text.empty())
     throw_input_error(file.path(), "no MERL file of 90 x 90 x 180 bins: " + text, 0);
 }
@@ -67,15 +67,16 @@ void check_size(const InputFile& file, const Dimensions& dims) {
                       std::min(found, wanted));
 }
 
-/// Also refuses what float could not hold.
+/// Also rejects values beyond the range of float.
 void check_values(const InputFile& file, std::span<const double> values) {
   const auto bad = std::find_if(values.begin(), values.end(),
                                 [](double v) { return !(std::abs(v) < largest_value); });
   if (bad == values.end())
     return;
   const auto index = static_cast<std::uint64_t>(bad - values.begin());
-  const char* what = std::isnan(*bad) ? "NaN" : std::isinf(*bad) ? "infinite" : "beyond 1e30";
-  throw_input_error(file.path(), std::string("value is ") + what + ", must be a finite reflectance",
+  const char* fault = std::isnan(*bad) ? "NaN" : std::isinf(*bad) ? "infinite" : "beyond 1e30";
+  throw_input_error(file.path(),
+                    std::string("value is ") + fault + ", must be a finite reflectance",
                     header_size + sizeof(double) * index);
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float tiny = 1e-20F;
 
-/// Ramps about evenly spaced rows, none zero: what is zero stays so.
+/// Ramps centred at evenly spaced rows; positive, since the updates keep zeros.
 Matrix ramps(std::size_t rows, std::size_t terms) {
   Matrix f(rows, terms);
   const float spacing = static_cast<float>(rows) / static_cast<float>(terms);
@@ -29,10 +29,10 @@ std::vector<float> column_sums(const Matrix& m) {
   return {sums.begin(), sums.end()};
 }
 
-/// Adds share · from to `to`, term by term.
-void add(std::span<float> to, float share, std::span<const float> from) {
+/// Adds factor · from to `to`, element by element.
+void add(std::span<float> to, float factor, std::span<const float> from) {
   for (std::size_t j = 0; j < to.size(); ++j)
-    to[j] += share * from[j];
+    to[j] += factor * from[j];
 }
 
 float product(std::span<const float> a, std::span<const float> b) {
@@ -42,31 +42,31 @@ float product(std::span<const float> a, std::span<const float> b) {
   return sum;
 }
 
-/// factors ∘ gained / totals.
-void scale(Matrix& factors, const Matrix& gained, std::span<const float> totals) {
+/// factors ∘ gradient / totals.
+void scale(Matrix& factors, const Matrix& gradient, std::span<const float> totals) {
   for (std::size_t r = 0; r < factors.rows; ++r)
     for (std::size_t j = 0; j < factors.columns; ++j)
-      factors.row(r)[j] *= gained.row(r)[j] / std::max(totals[j], tiny);
+      factors.row(r)[j] *= gradient.row(r)[j] / std::max(totals[j], tiny);
 }
 
 void update_f(const Matrix& y, Matrix& f, const Matrix& g) {
-  Matrix gained(f.rows, f.columns);
+  Matrix gradient(f.rows, f.columns);
   for (std::size_t r = 0; r < y.rows; ++r)
     for (std::size_t c = 0; c < y.columns; ++c)
-      add(gained.row(r), y.row(r)[c] / product(f.row(r), g.row(c)), g.row(c));
-  scale(f, gained, column_sums(g));
+      add(gradient.row(r), y.row(r)[c] / product(f.row(r), g.row(c)), g.row(c));
+  scale(f, gradient, column_sums(g));
 }
 
 void update_g(const Matrix& y, const Matrix& f, Matrix& g) {
-  Matrix gained(g.rows, g.columns);
+  Matrix gradient(g.rows, g.columns);
   for (std::size_t r = 0; r < y.rows; ++r)
     for (std::size_t c = 0; c < y.columns; ++c)
-      add(gained.row(c), y.row(r)[c] / product(f.row(r), g.row(c)), f.row(r));
-  scale(g, gained, column_sums(f));
+      add(gradient.row(c), y.row(r)[c] / product(f.row(r), g.row(c)), f.row(r));
+  scale(g, gradient, column_sums(f));
 }
 
-/// The mean of Y's rows as each term sees them.
-Matrix seen_rows(const Matrix& y, const Matrix& f) {
+/// Y's rows weighted by each term.
+Matrix weighted_rows(const Matrix& y, const Matrix& f) {
   Matrix g(y.columns, f.columns);
   for (std::size_t r = 0; r < y.rows; ++r)
     for (std::size_t c = 0; c < y.columns; ++c)
@@ -89,7 +89,7 @@ void move_scale_to_f(NonnegativeFactors& factors) {
 NonnegativeFactors factorise(const Matrix& y, std::size_t terms, int iterations) {
   NonnegativeFactors factors;
   factors.f = ramps(y.rows, terms);
-  factors.g = seen_rows(y, factors.f);
+  factors.g = weighted_rows(y, factors.f);
   update_f(y, factors.f, factors.g);
   for (int i = 0; i < iterations; ++i) {
     update_g(y, factors.f, factors.g);

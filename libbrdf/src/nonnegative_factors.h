@@ -29,8 +29,8 @@ struct NonnegativeFactors {
   Matrix g; ///< columns of Y × terms, each of which sums to one (or is zero)
 };
 
-/// Multiplicative updates that lessen the divergence of F Gᵀ from Y (their eq. 5), which keep the
-/// sums of Y's rows. They begin with terms that stand for neighbouring rows.
+/// Multiplicative updates that reduce the divergence of F Gᵀ from Y (their eq. 5) and preserve the
+/// sums of Y's rows. Initial terms represent neighbouring rows.
 NonnegativeFactors factorise(const Matrix& y, std::size_t terms, int iterations);
 
 } // namespace haarlight::brdf

@@ -29,23 +29,23 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find_first_of("\r\n"));
 }
 
-void refuse_choice(const ImageChoice& choice) {
+void reject_choice(const ImageChoice& choice) {
   if (!choice.layer.empty() || !choice.part.empty())
-    throw Refusal("has no layers or parts to choose from");
+    throw DecodeError("has no layers or parts to choose from");
 }
 
 void check_pixels(std::uint64_t width, std::uint64_t height) {
   if (width < 1 || height < 1)
-    throw Refusal("has no pixels");
+    throw DecodeError("has no pixels");
   if (width > max_pixels || height > max_pixels || width * height > max_pixels)
-    throw Refusal("has " + std::to_string(width) + " x " + std::to_string(height) +
-                  " pixels, at most " + std::to_string(max_pixels) + " are read");
+    throw DecodeError("has " + std::to_string(width) + " x " + std::to_string(height) +
+                      " pixels, at most " + std::to_string(max_pixels) + " are read");
 }
 
 void check_file_size(const Task& task, std::uint64_t raw_bytes, std::uint64_t ratio) {
   if (raw_bytes / ratio > task.bytes.size())
-    throw Refusal("is cut short: its pixels take " + std::to_string(raw_bytes / ratio) +
-                  " bytes at least, the file has " + std::to_string(task.bytes.size()));
+    throw DecodeError("is cut short: its pixels take " + std::to_string(raw_bytes / ratio) +
+                      " bytes at least, the file has " + std::to_string(task.bytes.size()));
 }
 
 Image upright(Image stored, unsigned orientation) {

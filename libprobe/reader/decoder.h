@@ -1,5 +1,5 @@
 #pragma once
-// What the decoders of the reader program share: their task, their result, and its checks.
+// Task, errors and checks common to the decoders of the reader program.
 
 #include "file/external_reader.h"
 
@@ -12,9 +12,8 @@
 
 namespace haarlight::probe::reader {
 
-/// A file that is not decoded; what() says why, as the rest of a sentence that begins with the
-/// file.
-class Refusal : public std::runtime_error {
+/// A file cannot be decoded; what() is a predicate whose subject is the file.
+class DecodeError : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
 };
@@ -25,7 +24,7 @@ struct Task {
   ImageChoice choice;
 };
 
-// The decoders. Each throws Refusal, or dies by a fault of a decoder's library.
+// The decoders. Each throws DecodeError, or dies by a fault of a decoder's library.
 DecodedImage read_exr(const Task& task);
 DecodedImage read_tiff(const Task& task);
 DecodedImage read_png(const Task& task);
@@ -37,10 +36,10 @@ void allow_memory(std::uint64_t bytes);
 /// Messages of libraries may have several lines; the first states the error.
 std::string first_line(const std::string& text);
 
-/// @throws Refusal if the format has neither layers nor parts and one was chosen
-void refuse_choice(const ImageChoice& choice);
+/// @throws DecodeError if the format has neither layers nor parts and one was chosen
+void reject_choice(const ImageChoice& choice);
 
-/// @throws Refusal if the size is zero or larger than max_pixels
+/// @throws DecodeError if the size is zero or larger than max_pixels
 void check_pixels(std::uint64_t width, std::uint64_t height);
 
 /// Refuses a file too short for its size, before the pixels are allocated.
@@ -48,7 +47,7 @@ void check_pixels(std::uint64_t width, std::uint64_t height);
 /// @param ratio raw bytes that a byte of the file can stand for at most
 void check_file_size(const Task& task, std::uint64_t raw_bytes, std::uint64_t ratio);
 
-/// Turns a stored image upright.
+/// Applies an orientation to a stored image.
 /// @param orientation EXIF and TIFF, 1 to 8: where row 0 and column 0 are shown; others count as 1
 Image upright(Image stored, unsigned orientation);
 

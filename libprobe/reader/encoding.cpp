@@ -37,7 +37,7 @@ Encoding power_encoding(double exponent, std::string note) {
 void set_primaries(Encoding& encoding, const Chromaticities& primaries) {
   encoding.matrix = rec709_from_rgb(primaries);
   if (!encoding.matrix)
-    throw Refusal("has primaries that span no colour space");
+    throw DecodeError("has primaries that span no colour space");
   if (encoding.matrix->isIdentity())
     encoding.matrix.reset();
 }
@@ -105,9 +105,9 @@ template void RowConverter::convert(const float*, int, float*);
 
 namespace {
 
-[[noreturn]] void refuse_profile() {
-  throw Refusal("has an ICC profile that is damaged or has neither primaries nor a grey curve; "
-                "convert the image to sRGB or to linear Rec. 709");
+[[noreturn]] void reject_profile() {
+  throw DecodeError("has an ICC profile that is damaged or has neither primaries nor a grey curve; "
+                    "convert the image to sRGB or to linear Rec. 709");
 }
 
 /// Big-endian values of a profile or of a tag in it.
@@ -138,7 +138,7 @@ public:
 private:
   void need(std::size_t offset, std::size_t count) const {
     if (offset > m_bytes.size() || count > m_bytes.size() - offset)
-      refuse_profile();
+      reject_profile();
   }
 
   std::span<const std::byte> m_bytes;
@@ -158,7 +158,7 @@ ProfileBytes find_tag(const ProfileBytes& profile, std::string_view signature) {
 
 Curve gamma_curve(double exponent) {
   if (!(exponent > 0))
-    refuse_profile();
+    reject_profile();
   if (exponent == 1)
     return {};
   return [exponent](double v) { return power(v, exponent); };
@@ -172,7 +172,7 @@ Curve read_curve_table(const ProfileBytes& tag) {
   if (count == 1)
     return gamma_curve(tag.u16(12) / 256.0);
   if (count > 65536)
-    refuse_profile();
+    reject_profile();
   std::vector<double> table(count);
   for (std::size_t i = 0; i < count; ++i)
     table[i] = tag.u16(12 + 2 * i) / 65535.0;
@@ -189,7 +189,7 @@ Curve read_parametric_curve(const ProfileBytes& tag) {
   constexpr std::size_t parameter_counts[] = {1, 3, 4, 5, 7};
   const std::uint32_t type = tag.u16(8);
   if (type > 4)
-    refuse_profile();
+    reject_profile();
   double p[7] = {1, 1, 0, 0, 0, 0, 0}; // g a b c d e f
   for (std::size_t i = 0; i < parameter_counts[type]; ++i)
     p[i] = tag.fixed(12 + 4 * i);
@@ -198,7 +198,7 @@ Curve read_parametric_curve(const ProfileBytes& tag) {
     return gamma_curve(g);
   if (type == 1 || type == 2) { // a constant below the zero of a v + b
     if (a == 0)
-      refuse_profile();
+      reject_profile();
     const double offset = type == 2 ? c : 0;
     d = -b / a;
     c = 0;
@@ -215,13 +215,13 @@ Curve read_curve(const ProfileBytes& tag) {
     return read_curve_table(tag);
   if (tag.text(0) == "para")
     return read_parametric_curve(tag);
-  refuse_profile();
+  reject_profile();
 }
 
 Encoding read_grey(const ProfileBytes& profile) {
   const ProfileBytes tag = find_tag(profile, "kTRC");
   if (tag.empty())
-    refuse_profile();
+    reject_profile();
   const Curve curve = read_curve(tag);
   return {{curve, curve, curve}, std::nullopt, {}};
 }
@@ -237,7 +237,7 @@ Encoding read_rgb(const ProfileBytes& profile) {
     const ProfileBytes curve = find_tag(profile, name + "TRC");
     const ProfileBytes primary = find_tag(profile, name + "XYZ");
     if (curve.empty() || primary.empty())
-      refuse_profile();
+      reject_profile();
     encoding.curves[static_cast<std::size_t>(c)] = read_curve(curve);
     for (int i = 0; i < 3; ++i)
       to_connection_space(i, c) = primary.fixed(8 + 4 * static_cast<std::size_t>(i));
@@ -253,10 +253,10 @@ Encoding read_rgb(const ProfileBytes& profile) {
 Encoding icc_encoding(std::span<const std::byte> profile_bytes) {
   const ProfileBytes profile(profile_bytes);
   if (profile.text(36) != "acsp" || profile.text(20) != "XYZ ")
-    refuse_profile();
+    reject_profile();
   const bool grey = profile.text(16) == "GRAY";
   if (!grey && profile.text(16) != "RGB ")
-    refuse_profile();
+    reject_profile();
   Encoding encoding = grey ? read_grey(profile) : read_rgb(profile);
   encoding.note = "values were converted to linear Rec. 709 by the embedded ICC profile";
   return encoding;

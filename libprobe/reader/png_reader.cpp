@@ -35,7 +35,7 @@ public:
   PngFile(const PngFile&) = delete;
   PngFile& operator=(const PngFile&) = delete;
 
-  /// @throws Refusal if libpng reports an error
+  /// @throws DecodeError if libpng reports an error
   void read_header() {
     if (setjmp(m_target) != 0)
       fail();
@@ -67,7 +67,7 @@ public:
   png_infop info = nullptr;
 
 private:
-  [[noreturn]] void fail() const { throw Refusal("cannot be decoded: libpng: " + m_error); }
+  [[noreturn]] void fail() const { throw DecodeError("cannot be decoded: libpng: " + m_error); }
 
   [[noreturn]] static void on_error(png_structp png, png_const_charp message) {
     auto* file = static_cast<PngFile*>(::png_get_error_ptr(png));
@@ -112,7 +112,7 @@ std::optional<Encoding> cicp_encoding(const PngFile& file) {
       return srgb_encoding("values were decoded as sRGB, as its cICP chunk states");
     if (is({1, 8, 0, 1}))
       return linear_encoding("values are linear, as its cICP chunk states");
-    throw Refusal("has a cICP chunk for another colour space than sRGB or linear Rec. 709");
+    throw DecodeError("has a cICP chunk for another colour space than sRGB or linear Rec. 709");
   }
   return std::nullopt;
 }
@@ -156,7 +156,7 @@ unsigned orientation_of(const PngFile& file) {
 } // namespace
 
 DecodedImage read_png(const Task& task) {
-  refuse_choice(task.choice);
+  reject_choice(task.choice);
   PngFile file(task.bytes);
   file.read_header();
   const std::uint64_t width = ::png_get_image_width(file.png, file.info);

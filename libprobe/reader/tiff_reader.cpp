@@ -32,8 +32,8 @@ void on_error(const char* module, const char* format, va_list arguments) {
 }
 
 [[noreturn]] void refuse_damaged() {
-  throw Refusal("cannot be decoded: libtiff: " +
-                (tiff_error().empty() ? "the file is damaged" : tiff_error()));
+  throw DecodeError("cannot be decoded: libtiff: " +
+                    (tiff_error().empty() ? "the file is damaged" : tiff_error()));
 }
 
 /// A file in memory, in the form that TIFFClientOpen wants.
@@ -116,7 +116,7 @@ std::vector<unsigned> find_pages(TIFF* tiff) {
 
 void choose_page(TIFF* tiff, const ImageChoice& choice) {
   if (!choice.layer.empty())
-    throw Refusal("has no layers, its pages are chosen as parts");
+    throw DecodeError("has no layers, its pages are chosen as parts");
   const std::vector<unsigned> pages = find_pages(tiff);
   const std::string count = std::to_string(pages.size());
   unsigned page = pages.empty() ? 0 : pages.front();
@@ -125,10 +125,10 @@ void choose_page(TIFF* tiff, const ImageChoice& choice) {
     const auto parsed = std::from_chars(choice.part.data(), end, page);
     if (parsed.ec != std::errc{} || parsed.ptr != end ||
         std::find(pages.begin(), pages.end(), page) == pages.end())
-      throw Refusal("has no page '" + choice.part + "'; it has " + count +
-                    " images, counted from 0");
+      throw DecodeError("has no page '" + choice.part + "'; it has " + count +
+                        " images, counted from 0");
   } else if (pages.size() != 1) {
-    throw Refusal("has " + count + " pages that are images, choose one as its part");
+    throw DecodeError("has " + count + " pages that are images, choose one as its part");
   }
   if (::TIFFSetDirectory(tiff, static_cast<tdir_t>(page)) == 0)
     refuse_damaged();
@@ -236,13 +236,13 @@ Encoding encoding_of(TIFF* tiff, const TiffHeader& h) {
   if (::TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &length, &profile) != 0) {
     Encoding encoding = icc_encoding({static_cast<const std::byte*>(profile), length});
     if (real && encoding.curves[0])
-      throw Refusal("has floating-point values and an ICC profile whose curve is not linear");
+      throw DecodeError("has floating-point values and an ICC profile whose curve is not linear");
     return encoding;
   }
   std::uint16_t* curves[3] = {};
   if (!real &&
       ::TIFFGetField(tiff, TIFFTAG_TRANSFERFUNCTION, &curves[0], &curves[1], &curves[2]) != 0)
-    throw Refusal("has a TransferFunction, which is not read; convert it to sRGB or float");
+    throw DecodeError("has a TransferFunction, which is not read; convert it to sRGB or float");
   Encoding encoding =
       real ? linear_encoding("")
       : h.bits == 8
@@ -258,7 +258,7 @@ SampleLayout layout_of(TIFF* tiff, const TiffHeader& h) {
                       .colours = h.photometric == PHOTOMETRIC_RGB ? 3 : 1,
                       .inverted = h.photometric == PHOTOMETRIC_MINISWHITE};
   if (h.samples < layout.colours)
-    throw Refusal("has " + std::to_string(h.samples) + " samples per pixel, RGB takes 3");
+    throw DecodeError("has " + std::to_string(h.samples) + " samples per pixel, RGB takes 3");
   std::uint16_t count = 0;
   std::uint16_t* types = nullptr;
   ::TIFFGetFieldDefaulted(tiff, TIFFTAG_EXTRASAMPLES, &count, &types);
@@ -337,7 +337,7 @@ DecodedImage read_log(TIFF* tiff, TiffHeader h) {
 DecodedImage read_display(TIFF* tiff, const TiffHeader& h) {
   char message[1024] = {};
   if (::TIFFRGBAImageOK(tiff, message) == 0)
-    throw Refusal("cannot be decoded: libtiff: " + std::string(message));
+    throw DecodeError("cannot be decoded: libtiff: " + std::string(message));
   std::vector<std::uint32_t> raster(std::size_t{h.width} * h.height);
   if (::TIFFReadRGBAImageOriented(tiff, h.width, h.height, raster.data(), h.orientation, 1) == 0)
     refuse_damaged();
@@ -386,7 +386,7 @@ DecodedImage decode(TIFF* tiff, const TiffHeader& h) {
   if (h.format == SAMPLEFORMAT_UINT && h.bits <= 8 &&
       (small_grey || h.photometric == PHOTOMETRIC_PALETTE || h.photometric == PHOTOMETRIC_YCBCR))
     return read_display(tiff, h);
-  throw Refusal(
+  throw DecodeError(
       "has " + std::to_string(h.samples) + " samples of " + std::to_string(h.bits) +
       " bits (SampleFormat " + std::to_string(h.format) + ", Photometric " +
       std::to_string(h.photometric) +

@@ -1,5 +1,5 @@
 #pragma once
-// Many pictures on one sheet, each under a caption.
+// A sheet of images, each under a caption.
 
 #include <wavelet/base/image.h>
 
@@ -10,7 +10,7 @@ namespace haarlight::image {
 
 struct SheetEntry {
   Image picture;
-  std::string caption; ///< ASCII; what the font lacks shows as a blank
+  std::string caption; ///< ASCII; characters that the font lacks appear as blanks
 };
 
 struct SheetOptions {

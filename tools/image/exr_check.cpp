@@ -189,7 +189,7 @@ std::size_t check_attributes(const InputFile& file, bool tiled) {
 
 // The chunks: blocks of scanlines, or tiles.
 
-/// What the methods of compression do at most.
+/// Limits of a compression method.
 struct Density {
   std::int64_t lines = 1;    ///< scanlines of a chunk
   std::int64_t overhead = 0; ///< bytes of every compressed chunk that hold no pixels

@@ -26,8 +26,8 @@ struct MapSetResult {
 MapSetResult write_map_set_exr(const wavelet::MapSource& source, OutputFile& file,
                                const wavelet::Progress& progress = {});
 
-/// The maps of such a file, read tile by tile from several threads. A plain square EXR image of R,
-/// G, B (or Y) channels and a power of two of pixels a side is taken as a set of one map of kind
+/// The maps of such a file, read tile by tile from several threads. An ordinary square EXR image of
+/// R, G, B (or Y) channels and a power of two of pixels a side is taken as a set of one map of kind
 /// Generic.
 class ExrMapSource : public wavelet::MapSource {
 public:

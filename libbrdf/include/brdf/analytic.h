@@ -12,8 +12,8 @@
 
 namespace haarlight::brdf {
 
-/// What isotropic models depend on, in double. Cosines are of the angles from the normal; sin_h and
-/// cos_h of θ_h; cos_d = cos θ_d between half vector and either direction.
+/// The parameters of isotropic models, in double. Cosines are of the angles from the normal; sin_h
+/// and cos_h of θ_h; cos_d = cos θ_d between half vector and either direction.
 struct Angles {
   double cos_i = 1;
   double cos_o = 1;

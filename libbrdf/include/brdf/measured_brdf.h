@@ -28,7 +28,7 @@ enum class Lookup {
 /// `trilinear` or `nearest`.
 const char* lookup_name(Lookup lookup);
 
-/// How many pairs of directions the bulk functions take at most.
+/// Largest number of direction pairs in a batch.
 inline constexpr int batch_capacity = 64;
 
 /// Pairs of directions in the local frame, by component.
@@ -85,14 +85,14 @@ public:
   /// @throws Error(Input) as read_merl()
   explicit MeasuredBrdf(const std::string& path, Lookup lookup = Lookup::Trilinear);
 
-  /// @param name what provenance calls the table
+  /// @param name of the table in provenance
   explicit MeasuredBrdf(const MerlTable& table, Lookup lookup = Lookup::Trilinear,
                         const std::string& name = "table");
 
   /// f_r in sr⁻¹.
   Rgb evaluate(const Vec3& local_wi, const Vec3& local_wo) const;
 
-  /// The same for many pairs, with the same bits, several times faster.
+  /// The same for many pairs: identical bits, several times faster.
   /// @param values `batch.count` results: R, G, B and 1 (0 where no valid cell is near)
   void evaluate(const DirectionBatch& batch, Float4* values) const;
 
@@ -134,13 +134,14 @@ private:
     Float4 value;
   };
 
-  /// Place of a cell in m_cells.
+  /// Index of a cell in m_cells.
   int index(int theta_h, int theta_d, int padded_phi_d) const {
     return (theta_h * merl_theta_d_bins + theta_d) * (m_phi_d_bins + 2) + padded_phi_d;
   }
   void fill(const MerlTable& table);
   void pad_rows();
-  Float4 interpolate(int cell, float theta_h_share, float theta_d_share, float phi_d_share) const;
+  Float4 interpolate(int cell, float theta_h_weight, float theta_d_weight,
+                     float phi_d_weight) const;
 
   Lookup m_lookup;
   int m_phi_d_bins;

@@ -214,7 +214,7 @@ std::vector<std::string> lines_of(const std::string& text) {
                               " file cannot be decoded: " + reason);
 }
 
-/// What the reader sent; nothing if it ended before that was complete or sent anything else.
+/// The output of the reader; not complete if it ended early or sent anything else.
 struct ReaderResult {
   bool complete = false;
   std::string error;

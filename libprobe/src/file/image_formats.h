@@ -1,5 +1,5 @@
 #pragma once
-// Image formats, known by the first bytes of a file and never by its name.
+// Image formats, recognised by the first bytes of a file and never by its name.
 
 #include <wavelet/base/image.h>
 

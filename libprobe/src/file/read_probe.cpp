@@ -76,8 +76,8 @@ LoadedImage read_image(const std::string& path, const ImageChoice& choice) {
 
 namespace {
 
-/// Pixels darker than this share of the picture's mean count as empty.
-constexpr double dark_share = 1e-3;
+/// Pixels darker than this fraction of the image's mean count as empty.
+constexpr double dark_fraction = 1e-3;
 
 double mean_luminance(const Image& image) {
   double sum = 0;
@@ -86,9 +86,9 @@ double mean_luminance(const Image& image) {
   return 3 * sum / static_cast<double>(image.rgb.size());
 }
 
-/// Share of the pixels well outside the inscribed disk that are empty: nearly all in pictures of
+/// Fraction of the pixels well outside the inscribed disk that are empty: nearly all in pictures of
 /// round mappings, captions being small.
-double empty_share_of_corners(const Image& image, double dark) {
+double empty_fraction_of_corners(const Image& image, double dark) {
   std::size_t outside = 0;
   std::size_t empty = 0;
   const Vec2 size(static_cast<float>(image.width), static_cast<float>(image.height));
@@ -126,10 +126,10 @@ struct BorderDifferences {
 };
 
 DetectedMapping detect_square(const Image& image) {
-  const double dark = dark_share * mean_luminance(image) + 1e-30;
-  if (empty_share_of_corners(image, dark) > 0.6)
+  const double dark = dark_fraction * mean_luminance(image) + 1e-30;
+  if (empty_fraction_of_corners(image, dark) > 0.6)
     return {Mapping::Angular, "mapping angular: the picture is square and its corners are empty "
-                              "(a mirror ball looks so too and must be named)"};
+                              "(a mirror ball looks the same and must be specified)"};
   const BorderDifferences border(image, dark);
   if (border.folded < 0.5 * border.apart)
     return {Mapping::Octahedral, "mapping octahedral: the picture is square, its corners are not "
@@ -154,9 +154,8 @@ LoadedProbe read_probe(const std::string& path, std::optional<Mapping> mapping, 
                        const ImageChoice& choice) {
   LoadedImage loaded = read_image(path, choice);
   const DetectedMapping taken =
-      mapping
-          ? DetectedMapping{*mapping, "mapping " + mapping_name(*mapping) + ", as was asked for"}
-          : detect_mapping(loaded.image, path);
+      mapping ? DetectedMapping{*mapping, "mapping " + mapping_name(*mapping) + ", as requested"}
+              : detect_mapping(loaded.image, path);
   LoadedProbe result{
       Probe(loaded.image, taken.mapping, lookup, path), taken.reason, std::move(loaded.notes), {}};
   result.source.set("source", loaded.name);

@@ -1,6 +1,6 @@
 #pragma once
-// Sums of source pixels by the exact area of each map pixel that they cover, and the few pixels of a
-// probe that need it because sampling could miss them or count them twice.
+// Sums of source pixels by the exact area of each map pixel that they cover, and the few pixels of
+// a probe that need it because sampling could miss them or count them twice.
 
 #include "mapping/point_kernels.h"
 
@@ -30,9 +30,10 @@ std::vector<PixelPlace> find_peaks(const Probe& probe, double contrast = 3);
 /// for all but extreme ones.
 float radiance_unit(const Probe& probe);
 
-/// Exact areas of a polygon in the pixels of a grid. Collects the area that a closed polygon covers of each pixel, edge by edge: every edge adds the
-/// signed area between itself and the right end of its rows. The sum over the edges is the area
-/// covered, positive where the polygon turns one way and negative where it turns the other.
+/// Exact areas of a polygon in the pixels of a grid. Collects the area that a closed polygon covers
+/// of each pixel, edge by edge: every edge adds the signed area between itself and the right end of
+/// its rows. The sum over the edges is the area covered, positive where the polygon turns one way
+/// and negative where it turns the other.
 class AreaRaster {
 public:
   /// Starts with pixels [left, left + width) × [top, top + height), all empty.

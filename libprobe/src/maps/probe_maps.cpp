@@ -59,53 +59,28 @@ Probe as_probe(const wavelet::Map& map) {
 }
 
 /// Offset of a pixel, or of one in the border, one step outside.
-std::size_t texel_offset(const RotatableMap& level, int x, int y) {
-  return 4 * (static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(level.size + 2) +
+std::size_t texel_offset(const RotatableMap& source, int x, int y) {
+  return 4 * (static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(source.size + 2) +
               static_cast<std::size_t>(x + 1));
 }
 
 /// Every edge is folded onto itself.
-void fill_border(RotatableMap& level) {
-  const int last = level.size - 1;
+void fill_border(RotatableMap& source) {
+  const int last = source.size - 1;
   const auto copy = [&](int x, int y) {
     const int inside_x = std::clamp(x, 0, last);
     const int inside_y = std::clamp(y, 0, last);
-    const std::size_t from = texel_offset(level, inside_y != y ? last - inside_x : inside_x,
+    const std::size_t from = texel_offset(source, inside_y != y ? last - inside_x : inside_x,
                                           inside_x != x ? last - inside_y : inside_y);
-    std::copy_n(level.rgbw.begin() + static_cast<std::ptrdiff_t>(from), 4,
-                level.rgbw.begin() + static_cast<std::ptrdiff_t>(texel_offset(level, x, y)));
+    std::copy_n(source.rgbw.begin() + static_cast<std::ptrdiff_t>(from), 4,
+                source.rgbw.begin() + static_cast<std::ptrdiff_t>(texel_offset(source, x, y)));
   };
-  for (int i = -1; i <= level.size; ++i) {
+  for (int i = -1; i <= source.size; ++i) {
     copy(i, -1);
-    copy(i, level.size);
+    copy(i, source.size);
     copy(-1, i);
-    copy(level.size, i);
+    copy(source.size, i);
   }
-}
-
-/// A world map averaged down to `size`, its peaks apart from the rest.
-RotatableMap make_rotatable(const wavelet::Map& map, int size) {
-  wavelet::Map small = map;
-  while (small.size > size)
-    small = wavelet::halved(small);
-  const Probe probe = as_probe(small);
-  RotatableMap level;
-  level.size = small.size;
-  level.unit = radiance_unit(probe);
-  level.rgbw.resize(texel_offset(level, level.size, level.size) + 4);
-  for (int y = 0; y < level.size; ++y)
-    for (int x = 0; x < level.size; ++x) {
-      float* texel = level.rgbw.data() + texel_offset(level, x, y);
-      const Rgb radiance = probe.pixel(x, y) / level.unit;
-      std::copy_n(radiance.data(), 3, texel);
-      texel[3] = 1;
-    }
-  for (const PixelPlace& place : find_peaks(probe, table_contrast)) {
-    level.peaks.push_back({place.x, place.y, probe.pixel(place.x, place.y) / level.unit});
-    std::fill_n(level.rgbw.data() + texel_offset(level, place.x, place.y), 4, 0.0F);
-  }
-  fill_border(level);
-  return level;
 }
 
 // Maps in rotated frames.
@@ -175,12 +150,12 @@ int rotation_samples_along(int size) {
   return along;
 }
 
-/// Look-ups in a level, whose border holds what lies beyond the folded edges of the square. Places
+/// Look-ups in a source, whose border holds what lies beyond the folded edges of the square. Places
 /// are counted in pixels from the centre of the border's first.
-class LevelLookup {
+class SourceLookup {
 public:
-  explicit LevelLookup(const RotatableMap& level)
-      : m_data(level.rgbw.data()), m_row(4 * static_cast<std::size_t>(level.size + 2)) {}
+  explicit SourceLookup(const RotatableMap& source)
+      : m_data(source.rgbw.data()), m_row(4 * static_cast<std::size_t>(source.size + 2)) {}
 
   template <Lookup lookup>
   Float4 at(float column, float row) const {
@@ -190,7 +165,8 @@ public:
     const float s = column - std::floor(column);
     const float t = row - std::floor(row);
     const float* below = upper_left + m_row;
-    const Float4 upper = load_pixel(upper_left) + (load_pixel(upper_left + 4) - load_pixel(upper_left)) * s;
+    const Float4 upper =
+        load_pixel(upper_left) + (load_pixel(upper_left + 4) - load_pixel(upper_left)) * s;
     const Float4 lower = load_pixel(below) + (load_pixel(below + 4) - load_pixel(below)) * s;
     return upper + (lower - upper) * t;
   }
@@ -208,9 +184,9 @@ private:
 template <Lookup lookup>
 class RowSampler {
 public:
-  /// @param level, frames must outlive this
-  RowSampler(const RotatableMap& level, int size, const std::vector<SampleFrame>& frames)
-      : m_size(size), m_level(level), m_look_up(level), m_frames(frames),
+  /// @param source, frames must outlive this
+  RowSampler(const RotatableMap& source, int size, const std::vector<SampleFrame>& frames)
+      : m_size(size), m_source(source), m_look_up(source), m_frames(frames),
         m_points((m_size + point_step - 1) / point_step * point_step),
         m_columns(static_cast<std::size_t>(m_points)), m_rows(m_columns.size()),
         m_sums(m_columns.size()) {}
@@ -236,7 +212,7 @@ private:
 
   void add(const SampleFrame& sample, int y) {
     const float step = 1.0F / static_cast<float>(m_size);
-    find_places(sample.frame, m_level.size,
+    find_places(sample.frame, m_source.size,
                 {sample.in_pixel.x() * step, step,
                  (static_cast<float>(y) + sample.in_pixel.y()) * step, m_points},
                 m_columns.data(), m_rows.data());
@@ -245,8 +221,8 @@ private:
   }
 
   int m_size;
-  const RotatableMap& m_level;
-  LevelLookup m_look_up;
+  const RotatableMap& m_source;
+  SourceLookup m_look_up;
   const std::vector<SampleFrame>& m_frames;
   int m_points;
   std::vector<float> m_columns;
@@ -254,27 +230,27 @@ private:
   std::vector<Sum> m_sums;
 };
 
-/// Adds the level's peaks as they lie in each frame.
-AreaSum peaks_in(const RotatableMap& level, int size, std::span<const SampleFrame> frames,
+/// Adds the source's peaks as they lie in each frame.
+AreaSum peaks_in(const RotatableMap& source, int size, std::span<const SampleFrame> frames,
                  Flatness flatness) {
   AreaSum peaks(size);
-  const PictureShape shape = {Mapping::Octahedral, level.size, level.size};
-  if (!level.peaks.empty())
+  const PictureShape shape = {Mapping::Octahedral, source.size, source.size};
+  if (!source.peaks.empty())
     for (const SampleFrame& sample : frames)
-      peaks.add(PixelCoverage(shape, size, sample.frame, flatness), level.peaks);
+      peaks.add(PixelCoverage(shape, size, sample.frame, flatness), source.peaks);
   return peaks;
 }
 
 /// One row of a map from its samples and the peaks, which were added in `layers` frames.
 template <Lookup lookup>
-void make_row(wavelet::Map& map, int y, const RotatableMap& level, RowSampler<lookup>& sampler,
+void make_row(wavelet::Map& map, int y, const RotatableMap& source, RowSampler<lookup>& sampler,
               const AreaSum& peaks, std::size_t layers) {
   sampler.sample(y);
   for (int x = 0; x < map.size; ++x) {
     const std::optional<Rgb> others = sampler.mean(x);
     const Rgb mean =
         peaks.mean(x, y, others ? *others : peaks.covered_mean(x, y), static_cast<float>(layers));
-    map.set(x, y, mean * level.unit);
+    map.set(x, y, mean * source.unit);
   }
 }
 
@@ -293,29 +269,52 @@ int matching_size(const MapOptions& options, int full_size) {
 }
 
 /// The map of one cell of ω_r, averaged over the cell.
-wavelet::Map cell_average(const RotatableMap& level, const MapOptions& options, int column, int row) {
+wavelet::Map cell_average(const RotatableMap& source, const MapOptions& options, int column,
+                          int row) {
   wavelet::Map map(options.size);
   const std::vector<SampleFrame> frames = frames_of_cell(options, column, row);
-  const AreaSum peaks = peaks_in(level, map.size, frames, table_flatness);
-  RowSampler<Lookup::Bilinear> sampler(level, map.size, frames);
+  const AreaSum peaks = peaks_in(source, map.size, frames, table_flatness);
+  RowSampler<Lookup::Bilinear> sampler(source, map.size, frames);
   for (int y = 0; y < map.size; ++y)
-    make_row(map, y, level, sampler, peaks, frames.size());
+    make_row(map, y, source, sampler, peaks, frames.size());
   return map;
 }
 
 } // namespace
 
-RotatableMap make_rotatable(const wavelet::Map& world) { return make_rotatable(world, world.size); }
+RotatableMap make_rotatable(const wavelet::Map& map, int largest_size) {
+  wavelet::Map small = map;
+  while (small.size > largest_size)
+    small = wavelet::halved(small);
+  const Probe probe = as_probe(small);
+  RotatableMap source;
+  source.size = small.size;
+  source.unit = radiance_unit(probe);
+  source.rgbw.resize(texel_offset(source, source.size, source.size) + 4);
+  for (int y = 0; y < source.size; ++y)
+    for (int x = 0; x < source.size; ++x) {
+      float* texel = source.rgbw.data() + texel_offset(source, x, y);
+      const Rgb radiance = probe.pixel(x, y) / source.unit;
+      std::copy_n(radiance.data(), 3, texel);
+      texel[3] = 1;
+    }
+  for (const PixelPlace& place : find_peaks(probe, table_contrast)) {
+    source.peaks.push_back({place.x, place.y, probe.pixel(place.x, place.y) / source.unit});
+    std::fill_n(source.rgbw.data() + texel_offset(source, place.x, place.y), 4, 0.0F);
+  }
+  fill_border(source);
+  return source;
+}
 
-wavelet::Map rotate_map(const RotatableMap& level, const Frame& frame, int size) {
+wavelet::Map rotate_map(const RotatableMap& source, const Frame& frame, int size) {
   wavelet::Map map(size);
-  const int along = std::max(2 * ((level.size + size - 1) / size), rotation_samples_along(size));
+  const int along = std::max(2 * ((source.size + size - 1) / size), rotation_samples_along(size));
   const std::vector<SampleFrame> frames = frames_of_rotation(frame, along * along);
-  const AreaSum peaks = peaks_in(level, size, std::span(frames).first(1), rotation_flatness);
+  const AreaSum peaks = peaks_in(source, size, std::span(frames).first(1), rotation_flatness);
   parallel_ranges(static_cast<std::size_t>(size), 4, [&](std::size_t begin, std::size_t end) {
-    RowSampler<Lookup::Nearest> sampler(level, size, frames);
+    RowSampler<Lookup::Nearest> sampler(source, size, frames);
     for (std::size_t y = begin; y < end; ++y)
-      make_row(map, static_cast<int>(y), level, sampler, peaks, 1);
+      make_row(map, static_cast<int>(y), source, sampler, peaks, 1);
   });
   return map;
 }
@@ -335,7 +334,7 @@ ProbeMaps::ProbeMaps(const Probe& probe, const MapOptions& options, const Proven
     return;
   }
   const wavelet::Map full = world_map(probe, default_map_size(probe, 1), m_options.supersample);
-  m_level = make_rotatable(full, matching_size(m_options, full.size));
+  m_source = make_rotatable(full, matching_size(m_options, full.size));
 }
 
 void ProbeMaps::describe(const Provenance& source, Mapping mapping) {
@@ -360,7 +359,7 @@ void ProbeMaps::describe(const Provenance& source, Mapping mapping) {
 wavelet::Map ProbeMaps::make(int column, int row) const {
   if (m_options.orientations == 1)
     return m_world;
-  return cell_average(m_level, m_options, column, row);
+  return cell_average(m_source, m_options, column, row);
 }
 
 std::optional<Rgb> ProbeMaps::integral(int /*column*/, int /*row*/) const { return m_integral; }

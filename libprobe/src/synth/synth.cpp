@@ -16,9 +16,9 @@ namespace haarlight::probe {
 namespace {
 
 /// Uniform numbers by SplitMix64, the same everywhere.
-class Chance {
+class Random {
 public:
-  explicit Chance(std::uint64_t seed) : m_state(seed) {}
+  explicit Random(std::uint64_t seed) : m_state(seed) {}
 
   float between(float low, float high) {
     const std::uint64_t z = splitmix64(m_state);
@@ -43,10 +43,10 @@ Vec3 direction_at(float azimuth, float elevation) {
 
 class Studio : public Scene {
 public:
-  explicit Studio(Chance chance) {
+  explicit Studio(Random random) {
     for (int i = 0; i < 5; ++i) {
-      const float azimuth = 2 * pi * (static_cast<float>(i) + chance.between(-0.3F, 0.3F)) / 5;
-      add_box(direction_at(azimuth, chance.between(0.1F, 1.1F)), chance);
+      const float azimuth = 2 * pi * (static_cast<float>(i) + random.between(-0.3F, 0.3F)) / 5;
+      add_box(direction_at(azimuth, random.between(0.1F, 1.1F)), random);
     }
   }
 
@@ -77,14 +77,14 @@ private:
     Rgb radiance;
   };
 
-  void add_box(const Vec3& direction, Chance& chance) {
+  void add_box(const Vec3& direction, Random& random) {
     Box box;
     const Vec3 side = Vec3::UnitY().cross(direction).normalized();
     box.frame = {side, direction.cross(side), direction};
-    box.half_width = chance.between(0.04F, 0.35F);
-    box.half_height = chance.between(0.04F, 0.35F);
-    const float warmth = chance.between(0.0F, 1.0F);
-    const float power = chance.between(0.15F, 0.6F) / (box.half_width * box.half_height);
+    box.half_width = random.between(0.04F, 0.35F);
+    box.half_height = random.between(0.04F, 0.35F);
+    const float warmth = random.between(0.0F, 1.0F);
+    const float power = random.between(0.15F, 0.6F) / (box.half_width * box.half_height);
     box.radiance = power * Rgb(1, 0.95F - 0.25F * warmth, 0.95F - 0.55F * warmth);
     m_boxes.push_back(box);
   }
@@ -94,39 +94,39 @@ private:
 
 class Spheres : public Scene {
 public:
-  explicit Spheres(Chance chance) {
+  explicit Spheres(Random random) {
     for (int i = 0; i < 12; ++i) {
-      const float sine = chance.between(-0.6F, 1.0F);
+      const float sine = random.between(-0.6F, 1.0F);
       const float elevation = 0.5F * pi - arccosine(sine);
       const float radius = (i % 3 == 0 ? 0.35F : (i % 3 == 1 ? 0.8F : 2.0F)) * pi / 180;
-      const Rgb colour(1, chance.between(0.6F, 1.0F), chance.between(0.4F, 1.0F));
-      const float power = chance.between(0.02F, 0.1F);
-      m_lamps.push_back({direction_at(chance.between(-pi, pi), elevation), radius,
-                         colour * power / (pi * radius * radius)});
+      const Rgb colour(1, random.between(0.6F, 1.0F), random.between(0.4F, 1.0F));
+      const float power = random.between(0.02F, 0.1F);
+      m_lights.push_back({direction_at(random.between(-pi, pi), elevation), radius,
+                          colour * power / (pi * radius * radius)});
     }
   }
 
   Rgb radiance(const Vec3& w) const override {
-    for (const Lamp& lamp : m_lamps)
-      if ((w - lamp.direction).squaredNorm() < lamp.radius * lamp.radius)
-        return lamp.radiance;
+    for (const SphereLight& light : m_lights)
+      if ((w - light.direction).squaredNorm() < light.radius * light.radius)
+        return light.radiance;
     return {0.004F, 0.004F, 0.005F};
   }
 
   std::vector<BrightSpot> spots() const override {
     std::vector<BrightSpot> result;
-    for (const Lamp& lamp : m_lamps)
-      result.push_back({lamp.direction, lamp.radius});
+    for (const SphereLight& light : m_lights)
+      result.push_back({light.direction, light.radius});
     return result;
   }
 
 private:
-  struct Lamp {
+  struct SphereLight {
     Vec3 direction;
     float radius; ///< of the disk, as a chord of the unit sphere
     Rgb radiance;
   };
-  std::vector<Lamp> m_lamps;
+  std::vector<SphereLight> m_lights;
 };
 
 // The daylight model of Preetham, Shirley and Smits, "A practical analytic model for daylight",
@@ -302,9 +302,9 @@ std::unique_ptr<Scene> make_scene(SceneKind kind, const SceneOptions& options) {
   constexpr auto degree = static_cast<float>(pi / 180);
   switch (kind) {
   case SceneKind::Studio:
-    return std::make_unique<Studio>(Chance(options.seed));
+    return std::make_unique<Studio>(Random(options.seed));
   case SceneKind::Spheres:
-    return std::make_unique<Spheres>(Chance(options.seed));
+    return std::make_unique<Spheres>(Random(options.seed));
   case SceneKind::SunSky:
     return std::make_unique<SunSky>(
         direction_at(static_cast<float>(options.sun_azimuth) * degree,
