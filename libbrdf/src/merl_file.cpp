@@ -70,7 +70,7 @@ void check_size(const InputFile& file, const Dimensions& dims) {
 /// Also rejects values beyond the range of float.
 void check_values(const InputFile& file, std::span<const double> values) {
   const auto bad = std::find_if(values.begin(), values.end(),
-                                [](double v) { return !(std::abs(v) < largest_value); });
+                                [](double v) { return !(std::abs(v) <= largest_value); });
   if (bad == values.end())
     return;
   const auto index = static_cast<std::uint64_t>(bad - values.begin());

@@ -86,12 +86,12 @@ void fill_border(RotatableMap& source) {
 // Maps in rotated frames.
 
 /// Of the outlines of peaks in one frame, and in those of a table, at least 16 for each map. Maps
-/// differ from those of the default flatness by less than 0.0002 of their norm, in a tenth of the
-/// time (probes of 8 and 31 pixels, grace).
+/// differ in the fourth digit of the error against nearest look-ups (probes of 8 and 31 pixels, and
+/// two captured ones), in a tenth of the time (probes of 8 and 31 pixels, grace).
 constexpr Flatness rotation_flatness = {0.02F};
 constexpr Flatness table_flatness = {0.15F};
 
-/// Samples of a map in one frame, about 3 ms, where that is between 8² and 32² for each pixel.
+/// Samples of a map in one frame, about 10 ms, where that is between 8² and 32² for each pixel.
 constexpr int samples_per_rotation = 1 << 20;
 
 /// Square root of the number of samples of a pixel, each in a frame of its own: about a map pixel
