@@ -3,8 +3,8 @@
 #include <support/program.h>
 #include <support/words.h>
 
-#include <brdf/bilateral.h>
 #include <brdf/brdf_maps.h>
+#include <brdf/brdf_properties.h>
 #include <wavelet/base/out_of_memory.h>
 
 #include <array>
@@ -33,17 +33,17 @@ void declare(tool::Tool& app, Options& o) {
   app.value(o.maps.roll, "--roll", "Cells of the roll phi over 360 degrees; 1 = theta_r only", 1,
             4096);
   app.value(o.maps.supersample, "--supersample",
-            "Samples along a pixel's side at least; lobes narrower than a pixel get more", 1, 64);
-  app.flag(o.no_cosine, "--no-cosine", "Leave the factor max(0, cos) out of the maps");
+            "Least number of samples along a pixel's side; narrow lobes get more", 1, 64);
+  app.flag(o.no_cosine, "--no-cosine", "Store f_r without the factor max(0, cos)");
   app.choice(o.lookup, "--lookup",
              {{"trilinear", brdf::Lookup::Trilinear}, {"nearest", brdf::Lookup::Nearest}},
-             "How the file's cells are read");
+             "Interpolation of the file's cells");
   app.choice(o.fold, "--fold",
              {{"auto", FoldChoice::Auto},
               {"none", FoldChoice::None},
               {"rotations", FoldChoice::Rotations},
               {"mirrors", FoldChoice::Mirrors}},
-             "Rolls to leave out by symmetry: auto = rotations where the rolls are a multiple of "
+             "Rolls omitted by symmetry: auto = rotations if the number of rolls is a multiple of "
              "4; mirrors averages the file with its bilateral mirror image");
 }
 
@@ -56,12 +56,12 @@ brdf::BrdfMapOptions map_options(const Options& o) {
     maps.fold = wavelet::Fold::Rotations;
   if (o.fold == FoldChoice::Mirrors)
     maps.fold = wavelet::Fold::Mirrors;
-  if (const auto problem = brdf::problem_of(maps))
+  if (const auto problem = brdf::validate(maps))
     throw tool::UsageError(*problem);
   return maps;
 }
 
-/// Says why a table without a valid cell has no maps.
+/// The reason why a table has no valid cell.
 std::string emptiness(const brdf::MeasuredBrdf& table) {
   std::string channels;
   for (std::size_t c = 0; c < 3; ++c)

@@ -1,7 +1,7 @@
 // brdfsynth: MERL-format files of analytic reflectance models.
 #include <support/program.h>
 
-#include <brdf/directional_albedo.h>
+#include <brdf/brdf_properties.h>
 #include <brdf/tabulate.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ void declare(tool::Tool& app, Options& o) {
   app.value(o.lobe_z, "--lobe-z", "Lafortune's C_z [1]", -10, 10);
   app.value(o.table.noise, "--noise",
             "Standard deviation of multiplicative noise per cell, relative; as in 0.05", 0, 2);
-  app.value(o.table.seed, "--seed", "Seed of the noise");
+  app.value(o.table.seed, "--seed", "Random seed of the noise");
   app.offer_json();
 }
 

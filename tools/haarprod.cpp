@@ -3,11 +3,14 @@
 #include <support/tree_argument.h>
 #include <support/words.h>
 
+#include <wavelet/base/error.h>
 #include <wavelet/file/file_hash.h>
 #include <wavelet/product/multiply.h>
 #include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 using namespace haarlight;
 
@@ -71,6 +74,25 @@ wavelet::SetInfo describe(const Options& options, const std::vector<tool::NamedT
   return info;
 }
 
+bool is_finite(const wavelet::TreeView& tree) {
+  if (!tree.mean.isFinite().all() || !std::isfinite(tree.scale))
+    return false;
+  for (std::uint32_t node = 0; node < tree.node_count; ++node) {
+    const wavelet::Details details = tree.details(node);
+    for (const Float4 d : {details.d1, details.d2, details.d3})
+      if (!wavelet::to_rgb(d).isFinite().all())
+        return false;
+  }
+  return true;
+}
+
+/// Refuses factors whose product or integral no float can hold.
+void require_range(bool holds, const std::vector<tool::NamedTree>& trees) {
+  if (!holds)
+    throw_input_error(trees.back().set->path(), "multiplied by the other trees, exceeds the "
+                                                "largest single-precision number");
+}
+
 void write(const std::string& path, const wavelet::SetInfo& info,
            const std::vector<wavelet::Tree>& trees) {
   OutputFile file(path);
@@ -81,9 +103,10 @@ void write(const std::string& path, const wavelet::SetInfo& info,
   file.commit([](const std::string& written) { const wavelet::TreeSet check(written); });
 }
 
-tool::Report integral_report(const Rgb& mean) {
+tool::Report integral_report(const Rgb& mean, const std::vector<tool::NamedTree>& trees) {
   tool::Report report;
   const Rgb integral = mean * wavelet::sphere_area;
+  require_range(integral.isFinite().all(), trees);
   const auto list = [](const Rgb& c) {
     return std::vector<double>{static_cast<double>(c[0]), static_cast<double>(c[1]),
                                static_cast<double>(c[2])};
@@ -123,13 +146,20 @@ int multiply(const tool::Tool& app, const Options& options) {
   } else if (!options.output.empty()) {
     products.push_back(wavelet::multiply(views, form));
   }
+  require_range(std::all_of(products.begin(), products.end(),
+                            [](const wavelet::Tree& tree) { return is_finite(tree.view()); }),
+                trees);
+  std::optional<tool::Report> integral;
+  if (options.factor)
+    integral =
+        integral_report(wavelet::inner_product(products[0].view(), products[1].view()), trees);
+  else if (options.integral || options.output.empty())
+    integral = integral_report(wavelet::product_integral(views), trees);
   if (!options.output.empty())
     write(options.output, describe(options, trees, form.levels, static_cast<int>(products.size())),
           products);
-  if (options.factor)
-    app.print(integral_report(wavelet::inner_product(products[0].view(), products[1].view())));
-  else if (options.integral || options.output.empty())
-    app.print(integral_report(wavelet::product_integral(views)));
+  if (integral)
+    app.print(*integral);
   return tool::exit_ok;
 }
 

@@ -44,14 +44,13 @@ void declare(tool::Tool& app, Options& options) {
   app.offer_json();
 }
 
-image::Picture read(const std::string& path) {
+Image read(const std::string& path) {
   return tool::has_extension(path, ".png") ? image::read_png(path) : image::read_exr(path);
 }
 
 /// Root of the mean squared relative error over all channels; where the reference is darker than a
 /// hundredth of its mean, relative to that.
-double relative_error(const image::Picture& picture, const image::Picture& reference,
-                      const std::string& path) {
+double relative_error(const Image& picture, const Image& reference, const std::string& path) {
   if (picture.width != reference.width || picture.height != reference.height)
     throw_input_error(path, "is not of the reference's size, " + std::to_string(reference.width) +
                                 " x " + std::to_string(reference.height) + " pixels");
@@ -74,7 +73,7 @@ int make_sheet(const tool::Tool& app, const Options& options) {
   if (!options.captions.empty() && options.captions.size() != options.paths.size())
     throw tool::UsageError("as many --caption options as pictures are needed");
   const bool compare = !options.reference.empty();
-  const image::Picture reference = compare ? read(options.reference) : image::Picture();
+  const Image reference = compare ? read(options.reference) : Image();
   tool::Report report;
   std::vector<image::SheetEntry> entries;
   for (std::size_t i = 0; i < options.paths.size(); ++i) {

@@ -1,4 +1,4 @@
-// probe2maps: a light probe to one map in the world's frame, or to a table of rotated ones.
+// probe2maps: a light probe to one map in the world frame, or to a table of rotated maps.
 #include <support/map_output.h>
 #include <support/program.h>
 
@@ -12,7 +12,7 @@ using namespace haarlight;
 
 namespace {
 
-/// Nothing stands for `auto`.
+/// Empty for `auto`.
 using MappingChoice = std::optional<probe::Mapping>;
 
 struct Options {
@@ -25,23 +25,24 @@ struct Options {
 
 void declare(tool::Tool& app, Options& o) {
   app.input(o.input, "IN",
-            "Light probe: Radiance RGBE, OpenEXR, PFM, TIFF, PNG or JPEG, known by its content");
+            "Light probe: Radiance RGBE, OpenEXR, PFM, TIFF, PNG or JPEG, recognised by content");
   tool::add_map_output(app, o.output);
   app.value(o.maps.size, "--size",
-            "Pixels along a map's side, a power of two from 4; 0 = 512 to 2048, losing nothing, or "
-            "128 with orientations",
+            "Pixels along a map's side, a power of two, at least 4; 0 = 512 to 2048 by the size of "
+            "the probe, or 128 with orientations",
             0, 8192);
   app.value(o.maps.orientations, "--orientations",
             "M: 1 = one map in the world's frame, else M x M mirror directions", 1, 1024);
   app.value(o.maps.supersample, "--supersample",
-            "Samples along a pixel's side at least; small pixels of the probe get more", 1, 64);
+            "Least number of samples along a pixel's side; small pixels of the probe get more", 1,
+            64);
   app.choice(o.mapping, "--mapping",
              {{"auto", MappingChoice()},
               {"angular", probe::Mapping::Angular},
               {"latlong", probe::Mapping::LatLong},
               {"mirrorball", probe::Mapping::MirrorBall},
               {"octahedral", probe::Mapping::Octahedral}},
-             "How the picture shows the sphere; auto judges by aspect and content");
+             "Mapping of the probe; auto decides by aspect ratio and content");
   app.text(o.image.layer, "--layer", "NAME",
            "Layer of an OpenEXR file: the channels NAME.R, NAME.G, NAME.B or NAME.Y. Default: R, "
            "G, B without a layer, else the only layer with these, else Y");
@@ -58,8 +59,7 @@ void check(const probe::MapOptions& maps) {
 /// For errors of memory.
 std::string maps_text(int size) {
   const std::string side = std::to_string(size);
-  return size == 0 ? "maps that lose nothing of the probe"
-                   : "a map of " + side + " x " + side + " pixels";
+  return size == 0 ? "maps of the default size" : "a map of " + side + " x " + side + " pixels";
 }
 
 /// 0 = unknown.

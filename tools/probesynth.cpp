@@ -1,4 +1,4 @@
-// probesynth: made-up light probes as angular RGBE pictures.
+// probesynth: synthetic light probes as angular RGBE images.
 #include <support/program.h>
 #include <support/words.h>
 
@@ -27,11 +27,11 @@ const std::vector<std::pair<std::string, probe::SceneKind>> scene_names = {
 
 void declare(tool::Tool& app, Options& o) {
   app.choice(o.kind, "--scene", scene_names,
-             "What to draw: softboxes, sun and sky over ground, or small lamps in the dark");
+             "Softboxes, sun and sky over ground, or small bright spheres on a dark background");
   app.require("--scene");
   app.output(o.output, "OUT.hdr", "Radiance RGBE picture to write, an angular map");
   app.value(o.size, "--size", "Pixels along a side", 8, 8192);
-  app.value(o.scene.seed, "--seed", "Seed of what is left to chance in studio and spheres");
+  app.value(o.scene.seed, "--seed", "Random seed of studio and spheres");
   app.value(o.scene.turbidity, "--turbidity", "Haze of the sky, 2 = clear", 2, 10);
   app.value(o.scene.sun_elevation, "--sun-elevation", "Degrees above the horizon", 0, 90);
   app.value(o.scene.sun_azimuth, "--sun-azimuth", "Degrees from forward (-z) to the right (+x)",
@@ -46,7 +46,7 @@ std::string name_of(probe::SceneKind kind) {
   return {};
 }
 
-/// The options that shaped the picture, as header lines.
+/// The options of the image, as header lines.
 std::vector<std::string> comments(const Options& o) {
   std::vector<std::string> lines = {version_text() + " probesynth, angular map",
                                     "scene=" + name_of(o.kind)};
@@ -60,7 +60,7 @@ std::vector<std::string> comments(const Options& o) {
   return lines;
 }
 
-tool::Report describe(const probe::Image& image, const std::string& path) {
+tool::Report describe(const Image& image, const std::string& path) {
   const probe::Probe light(image, probe::Mapping::Angular);
   float largest = 0;
   for (int y = 0; y < image.height; ++y)
@@ -76,7 +76,7 @@ tool::Report describe(const probe::Image& image, const std::string& path) {
 
 int draw(const tool::Tool& app, const Options& options) {
   const auto scene = probe::make_scene(options.kind, options.scene);
-  const probe::Image image = probe::draw_angular(*scene, options.size);
+  const Image image = probe::draw_angular(*scene, options.size);
   probe::write_rgbe(options.output, image, comments(options));
   app.print(describe(image, options.output));
   return tool::exit_ok;

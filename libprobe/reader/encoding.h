@@ -1,8 +1,8 @@
 #pragma once
 // How stored sample values become linear Rec. 709 colours.
 
+#include "decoder.h"
 #include "file/colour_space.h"
-#include "picture.h"
 
 #include <functional>
 #include <optional>
@@ -28,11 +28,11 @@ Encoding linear_encoding(std::string note);
 Encoding power_encoding(double exponent, std::string note);
 
 /// What an ICC profile of type matrix/TRC (RGB) or TRC (grey) states (ICC.1:2010, annex F).
-/// @throws Refusal for every other profile
+/// @throws DecodeError for every other profile
 Encoding icc_encoding(std::span<const std::byte> profile);
 
 /// Sets the matrix for some primaries.
-/// @throws Refusal if they are degenerate
+/// @throws DecodeError if they are degenerate
 void set_primaries(Encoding& encoding, const Chromaticities& primaries);
 
 enum class Alpha {

@@ -48,6 +48,45 @@ expect 3 haarinfo /dev/zero
 says "device"
 expect 3 haarinfo - <&-
 rm late.haar
+"$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.1 -q -o gloss.binary >/dev/null
+maps=(-q --size 8 --theta 2 --conservation-tolerance 1)
+expect 0 brdf2maps gloss.binary "${maps[@]}" -o file.haar
+expect 0 brdf2maps - "${maps[@]}" -o pipe.haar < <(cat gloss.binary)
+expect 0 haardiff file.haar pipe.haar --max-linf 0
+expect 0 brdf2maps <(cat gloss.binary) "${maps[@]}" -o pipe.haar
+expect 0 haardiff file.haar pipe.haar --max-linf 0
+"$bin/haarrender" scene.json --size 16x8 --spp 1 -q -o image.exr --png image.png >/dev/null
+{ printf 'PF\n2 1\n-1.0\n'; head -c 24 studio.hdr | tr -c '[:lower:]' b; } >image.pfm
+for image in image.exr image.png image.pfm; do
+  expect 0 probe2maps $image --mapping latlong -q --size 16 -o file.haar
+  expect 0 probe2maps - --mapping latlong -q --size 16 -o pipe.haar < <(cat $image)
+  expect 0 haardiff file.haar pipe.haar --max-linf 0
+  expect 0 probe2maps <(cat $image) --mapping latlong -q --size 16 -o pipe.haar
+  expect 0 haardiff file.haar pipe.haar --max-linf 0
+done
+twice() {
+  expect 2 "$@" </dev/null
+  says "standard input, which is read once"
+}
+twice haarbench --brdf - --probe - -o bench
+twice haarbench --brdf - - --probe studio.hdr -o bench
+[ ! -e bench ] || fail "haarbench left its folder"
+if [ -x "$bin/haarview" ]; then
+  twice haarview - --probe - --frame view.png
+  twice haarview - --against - --frames 1
+  twice haarview - --compare --reference - --frame view.png
+fi
+
+# Memory that the system refuses is named.
+truncate -s 10G large.haar
+(
+  ulimit -v 2000000
+  failures=0
+  expect 5 haarinfo large.haar
+  says "for the contents of large.haar"
+  exit "$failures"
+) || failures=$((failures + 1))
+rm large.haar
 
 # Neither form needs the temporary folder.
 TMPDIR=/nonexistent expect 0 haarinfo packed.haar

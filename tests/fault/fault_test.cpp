@@ -1,6 +1,6 @@
 // Faults of the operating system and signals at random times: a program must end with an exit code
 // and one line, and its outputs must be complete or as they were before.
-// Usage: fault_test PROGRAM_FOLDER SHIM faults|signals|limits
+// Usage: fault_test PROGRAM_FOLDER SHIM faults|signals|limits [CASE…]     (default: all cases)
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -31,6 +32,12 @@ struct Case {
   std::string name;
   Strings command;
   Strings outputs;
+  /// Outputs hold durations: they are complete if they start and end as without a fault.
+  bool timed = false;
+  /// Complete files that a failed run may leave here, for the next one.
+  std::string cache = "";
+  /// Runs in a graphics library, whose own calls of mmap, open and pthread_create are not tested.
+  bool graphics = false;
 };
 
 // clang-format off
@@ -49,6 +56,12 @@ const std::vector<Case> cases = {
     {"haarrelight-build", {"haarrelight", "build", "../in/scene.json", "--vary", "light", "--tolerance", "0.3", "--resolution", "8", "-o", "out.haar"}, {"out.haar"}},
     {"haarrelight-apply", {"haarrelight", "apply", "../in/transfer.haar", "-o", "out.exr"}, {"out.exr"}},
     {"haarsheet", {"haarsheet", "../in/picture.exr", "../in/picture.exr", "-o", "out.png"}, {"out.png"}},
+    {"brdfsynth", {"brdfsynth", "--model", "ggx", "--diffuse", "0.2,0.1,0.1", "-o", "out.binary"}, {"out.binary"}},
+    {"haarrelight-sweep", {"haarrelight", "sweep", "../in/transfer.haar", "--frames", "2", "-o", "out.png"}, {"out.png", "out-0000.png", "out-0001.png"}},
+    {"haarbench", {"haarbench", "--brdf", "../in/ggx.binary", "--probe", "../in/studio.hdr", "--samplers", "light", "--size", "4x4", "--seeds", "2", "--spp", "1", "--reference-spp", "16", "--brdf-size", "8", "--theta", "2", "--probe-size", "8", "-o", "out"},
+     {"out/results.json", "out/results.csv", "out/report.html"}, true, "out/cache/"},
+    {"haarview", {"haarview", "../in/transfer.haar", "--frame", "out.exr"}, {"out.exr"}, false, "", true},
+    {"haarview-export", {"haarview", "../in/lobe.haar", "--size", "8x8", "--export", "out.html"}, {"out.html"}, false, "", true},
 };
 
 const std::vector<Strings> preparation = {
@@ -57,6 +70,7 @@ const std::vector<Strings> preparation = {
     {"probe2maps", "studio.hdr", "-q", "--size", "32", "-o", "light.exr"},
     {"maps2haar", "light.exr", "-q", "-o", "light.haar"},
     {"maps2haar", "light.haar", "-q", "--pack", "-o", "packed.haar"},
+    {"brdf2maps", "ggx.binary", "-q", "--size", "16", "--theta", "2", "--conservation-tolerance", "1", "-o", "lobe.haar"},
     {"haarrender", "scene.json", "-q", "--spp", "1", "-o", "picture.exr"},
     {"haarrelight", "build", "scene.json", "-q", "--vary", "light", "--tolerance", "0.3", "--resolution", "8", "-o", "transfer.haar"},
 };
@@ -71,6 +85,7 @@ const char* const scene = R"({"film": {"width": 32, "height": 32},
 struct Setup {
   std::map<std::string, std::string> environment;
   long file_size_limit = -1; ///< bytes; −1: none
+  bool must_fail = false;    ///< a program that meets the fault may not succeed
   int signal = 0;            ///< sent after `delay` seconds
   double delay = 0;
 };
@@ -99,7 +114,9 @@ double now() {
 
 class Runner {
 public:
-  Runner(fs::path programs, fs::path shim) : m_programs(std::move(programs)), m_shim(shim) {
+  /// @param chosen names of cases; empty for all
+  Runner(fs::path programs, fs::path shim, Strings chosen)
+      : m_programs(std::move(programs)), m_shim(shim), m_chosen(std::move(chosen)) {
     std::string name = (fs::temp_directory_path() / "fault.XXXXXX").string();
     m_root = ::mkdtemp(name.data());
     for (const char* folder : {"in", "work", "tmp"})
@@ -118,10 +135,22 @@ public:
   int failures() const { return m_failures; }
   int runs() const { return m_runs; }
 
-  /// Outputs and duration of an undisturbed run.
-  double remember(const Case& c) {
+  /// Remembers the outputs of an undisturbed run.
+  /// @return its duration; nothing if the case was not chosen, or the program was not built or
+  ///         cannot draw on this machine
+  std::optional<double> remember(const Case& c) {
     clear();
+    if (!m_chosen.empty() && std::find(m_chosen.begin(), m_chosen.end(), c.name) == m_chosen.end())
+      return std::nullopt;
+    if (c.graphics && !fs::exists(m_programs / c.command[0])) {
+      std::printf("SKIPPED: %s: was not built\n", c.name.c_str());
+      return std::nullopt;
+    }
     const Outcome outcome = run(c.command, "work", {});
+    if (c.graphics && outcome.complaint.rfind(c.command[0] + ": EGL: ", 0) == 0) {
+      std::printf("SKIPPED: %s", outcome.complaint.c_str());
+      return std::nullopt;
+    }
     m_wanted.clear();
     for (const std::string& output : c.outputs)
       m_wanted[output] = read_file(m_root / "work" / output);
@@ -136,8 +165,10 @@ public:
     clear();
     const std::string old = "an output of an earlier run\n";
     for (const std::string& output : c.outputs)
-      if (old_outputs)
+      if (old_outputs) {
+        fs::create_directories((m_root / "work" / output).parent_path());
         write_file(m_root / "work" / output, old);
+      }
     setup.environment["FAULT_MARK"] = (m_root / "mark").string();
     const Outcome outcome = run(c.command, "work", setup);
     ++m_runs;
@@ -148,7 +179,7 @@ public:
       if (!fs::exists(path))
         return !done && !old_outputs;
       const std::string bytes = read_file(path);
-      return bytes == m_wanted[output] || (!done && old_outputs && bytes == old);
+      return is_complete(c, output, bytes) || (!done && old_outputs && bytes == old);
     };
     for (const std::string& output : c.outputs)
       if (!intact(output))
@@ -156,10 +187,27 @@ public:
     if (setup.signal == SIGKILL)
       check_recovery(c, what);
     check_leftovers(c, what, outcome);
-    return fs::exists(m_root / "mark");
+    const bool injected = fs::exists(m_root / "mark");
+    if (injected && done && setup.must_fail)
+      fail(c, what, outcome, "ignores the failure");
+    return injected;
   }
 
 private:
+  bool is_complete(const Case& c, const std::string& output, const std::string& bytes) {
+    const std::string& wanted = m_wanted[output];
+    if (!c.timed)
+      return bytes == wanted;
+    // Axes and thus the number of lines go with the durations; the end of a file does not.
+    const auto last_line = [](const std::string& text) {
+      return text.substr(text.find_last_of('\n', text.size() - 2) + 1);
+    };
+    return bytes.size() > 2 && bytes.substr(0, 8) == wanted.substr(0, 8) &&
+           (output.ends_with(".csv")
+                ? std::ranges::count(bytes, '\n') == std::ranges::count(wanted, '\n')
+                : last_line(bytes) == last_line(wanted));
+  }
+
   void clear() const {
     for (const char* folder : {"work", "tmp"})
       for (const auto& entry : fs::directory_iterator(m_root / folder))
@@ -198,17 +246,29 @@ private:
     if (outcome.status != 0)
       fail(c, what, outcome, "cannot be run again");
     for (const std::string& output : c.outputs)
-      if (read_file(m_root / "work" / output) != m_wanted[output])
+      if (!is_complete(c, output, read_file(m_root / "work" / output)))
         fail(c, what, outcome, output + " is wrong after a second run");
   }
 
   void check_leftovers(const Case& c, const std::string& what, const Outcome& outcome) {
     for (const char* folder : {"work", "tmp"})
-      for (const auto& entry : fs::directory_iterator(m_root / folder)) {
-        const std::string name = entry.path().filename().string();
-        if (std::find(c.outputs.begin(), c.outputs.end(), name) == c.outputs.end())
+      for (const auto& entry : fs::recursive_directory_iterator(m_root / folder)) {
+        const std::string name = fs::relative(entry.path(), m_root / folder).string();
+        if (!may_remain(c, name, entry.is_directory()))
           fail(c, what, outcome, "leaves " + name);
       }
+  }
+
+  /// Outputs, their folders, and files of a cache that have their names.
+  static bool may_remain(const Case& c, const std::string& name, bool is_folder) {
+    if (is_folder)
+      return std::any_of(
+                 c.outputs.begin(), c.outputs.end(),
+                 [&](const std::string& output) { return output.rfind(name + "/", 0) == 0; }) ||
+             name + "/" == c.cache;
+    const bool cached = !c.cache.empty() && name.rfind(c.cache, 0) == 0;
+    return (cached && name[c.cache.size()] != '.') ||
+           std::find(c.outputs.begin(), c.outputs.end(), name) != c.outputs.end();
   }
 
   void fail(const Case& c, const std::string& what, const Outcome& outcome,
@@ -281,6 +341,7 @@ private:
 
   fs::path m_programs;
   fs::path m_shim;
+  Strings m_chosen;
   fs::path m_root;
   std::map<std::string, std::string> m_wanted;
   int m_failures = 0;
@@ -292,22 +353,32 @@ void inject_faults(Runner& runner) {
   struct Call {
     const char* name;
     int error;
-    int most; ///< calls that are tried
+    int most;               ///< calls that are tried
+    bool must_fail = false; ///< no program may ignore the failure
+    bool library = false;   ///< graphics libraries call it
   };
-  const Call calls[] = {
-      {"write", ENOSPC, 6},    {"pwrite", ENOSPC, 12},       {"pwrite", EINTR, 2},
-      {"fsync", EIO, 4},       {"rename", EACCES, 4},        {"linkat", EACCES, 4},
-      {"ftruncate", EIO, 4},   {"mmap", ENOMEM, 6},          {"open", EMFILE, 8},
-      {"mkostemp", EACCES, 3}, {"pthread_create", EAGAIN, 3}};
+  const Call calls[] = {{"write", ENOSPC, 6},
+                        {"pwrite", ENOSPC, 12, true},
+                        {"pwrite", EINTR, 2},
+                        {"fsync", EIO, 4, true},
+                        {"rename", EACCES, 4, true},
+                        {"linkat", EACCES, 4, true},
+                        {"ftruncate", EIO, 4},
+                        {"mmap", ENOMEM, 6, false, true},
+                        {"open", EMFILE, 8, false, true},
+                        {"mkostemp", EACCES, 3},
+                        {"pthread_create", EAGAIN, 3, false, true}};
   std::map<std::string, int> injected;
   for (const Case& c : cases) {
-    runner.remember(c);
+    if (!runner.remember(c))
+      continue;
     for (const Call& call : calls)
-      for (int k = 1; k <= call.most; ++k) {
+      for (int k = 1; k <= call.most && !(c.graphics && call.library); ++k) {
         Setup setup;
         setup.environment = {{"FAULT_CALL", call.name},
                              {"FAULT_INDEX", std::to_string(k)},
                              {"FAULT_ERROR", std::to_string(call.error)}};
+        setup.must_fail = call.must_fail && !c.graphics;
         const std::string what = std::string(call.name) + " " + std::to_string(k) + " fails by " +
                                  std::strerror(call.error);
         if (!runner.disturb(c, what, setup, k % 2 == 0))
@@ -322,12 +393,14 @@ void inject_faults(Runner& runner) {
 void send_signals(Runner& runner) {
   std::mt19937 random(1);
   for (const Case& c : cases) {
-    const double duration = runner.remember(c);
+    const std::optional<double> duration = runner.remember(c);
+    if (!duration)
+      continue;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGKILL})
       for (int i = 0; i < 4; ++i) {
         Setup setup;
         setup.signal = signal;
-        setup.delay = 1.1 * duration * std::uniform_real_distribution<double>(0, 1)(random);
+        setup.delay = 1.1 * *duration * std::uniform_real_distribution<double>(0, 1)(random);
         runner.disturb(c, "signal " + std::to_string(signal), setup, i % 2 == 0);
       }
   }
@@ -336,7 +409,8 @@ void send_signals(Runner& runner) {
 /// Files cannot grow beyond a size, as on a full disk.
 void limit_sizes(Runner& runner) {
   for (const Case& c : cases) {
-    runner.remember(c);
+    if (!runner.remember(c))
+      continue;
     for (const long bytes : {0L, 1L, 100L, 400L}) {
       Setup setup;
       setup.file_size_limit = bytes;
@@ -348,11 +422,11 @@ void limit_sizes(Runner& runner) {
 } // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fputs("usage: fault_test PROGRAM_FOLDER SHIM faults|signals|limits\n", stderr);
+  if (argc < 4) {
+    std::fputs("usage: fault_test PROGRAM_FOLDER SHIM faults|signals|limits [CASE…]\n", stderr);
     return 2;
   }
-  Runner runner(argv[1], argv[2]);
+  Runner runner(fs::absolute(argv[1]), fs::absolute(argv[2]), Strings(argv + 4, argv + argc));
   const std::string mode = argv[3];
   if (mode == "faults")
     inject_faults(runner);

@@ -2,9 +2,12 @@
 // Shared by the fuzz targets: how an input becomes a file, and which outcomes are allowed.
 
 #include <wavelet/base/error.h>
+#include <wavelet/base/parallel.h>
 
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <span>
 #include <string>
 
@@ -53,16 +56,47 @@ inline std::span<const std::byte> bytes_of(const std::uint8_t* data, std::size_t
   return std::as_bytes(std::span(data, size));
 }
 
-/// Runs a reader. It may succeed or throw Error(Input); anything else that it throws ends the
-/// fuzzer, which then keeps the input.
+/// CPU time of this process, s.
+inline double cpu_seconds() {
+  return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
+}
+
+/// Ends the fuzzer for an input that takes more than a second of CPU time. libFuzzer's own limit is
+/// of wall-clock time, which a busy machine exceeds for any input.
+class TimeLimit {
+public:
+  ~TimeLimit() {
+    if (cpu_seconds() - m_start <= 1)
+      return;
+    std::fputs("ERROR: took more than 1 s of CPU time\n", stderr);
+    std::abort();
+  }
+
+private:
+  double m_start = cpu_seconds();
+};
+
+/// Runs a reader in one thread. It may succeed or throw Error(Input); anything else that it throws
+/// ends the fuzzer, which then keeps the input.
 template <class F>
 void read_or_refuse(F&& read) {
+  static const ThreadLimit one(1); // starting threads would take most of the time of an execution
+  const TimeLimit limit;
   try {
     read();
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::Input)
       std::abort();
   }
+}
+
+/// Runs a reader of a path on an input. @return what LLVMFuzzerTestOneInput returns
+template <class F>
+int read_file(const std::uint8_t* data, std::size_t size, F&& read) {
+  static MemoryFile file;
+  file.assign(bytes_of(data, size));
+  read_or_refuse([&] { read(file.path()); });
+  return 0;
 }
 
 } // namespace haarlight::fuzzing

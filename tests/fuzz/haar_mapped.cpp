@@ -11,11 +11,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static fuzzing::MemoryFile file;
-  file.assign(fuzzing::bytes_of(data, size));
-  fuzzing::read_or_refuse([&] {
-    const wavelet::TreeSet set(file.path(), wavelet::Check::WhenUsed);
-    fuzzing::walk(set);
+  return fuzzing::read_file(data, size, [](const std::string& path) {
+    fuzzing::walk(wavelet::TreeSet(path, wavelet::Check::WhenUsed));
   });
-  return 0;
 }

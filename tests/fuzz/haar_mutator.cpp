@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <random>
 #include <vector>
@@ -128,19 +129,33 @@ private:
   void match_mapped_header(std::span<const Bytes> block_bytes);
 };
 
+/// Contexts of zstd, used again: allocating them takes longer than such small frames.
+struct FrameCoder {
+  std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> compressor{ZSTD_createCCtx(), ZSTD_freeCCtx};
+  std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> decompressor{ZSTD_createDCtx(),
+                                                                    ZSTD_freeDCtx};
+};
+
+const FrameCoder& frame_coder() {
+  static const FrameCoder coder;
+  return coder;
+}
+
 std::optional<Bytes> decompressed(std::span<const std::byte> frame) {
   const auto size = ZSTD_getFrameContentSize(frame.data(), frame.size());
   if (size > largest_stream) // includes the codes of errors
     return std::nullopt;
   Bytes content(size);
-  if (ZSTD_decompress(content.data(), size, frame.data(), frame.size()) != size)
+  if (ZSTD_decompressDCtx(frame_coder().decompressor.get(), content.data(), size, frame.data(),
+                          frame.size()) != size)
     return std::nullopt;
   return content;
 }
 
 Bytes compressed(const Bytes& content) {
   Bytes frame(ZSTD_compressBound(content.size()));
-  frame.resize(ZSTD_compress(frame.data(), frame.size(), content.data(), content.size(), 1));
+  frame.resize(ZSTD_compressCCtx(frame_coder().compressor.get(), frame.data(), frame.size(),
+                                 content.data(), content.size(), 1));
   return frame;
 }
 

@@ -3,7 +3,6 @@
 #include "haar_mutator.h"
 #include "walk_trees.h"
 
-#include <wavelet/base/parallel.h>
 #include <wavelet/file/packed_set.h>
 
 using namespace haarlight;
@@ -14,12 +13,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const ThreadLimit limit(1);
-  static fuzzing::MemoryFile file;
-  file.assign(fuzzing::bytes_of(data, size));
-  fuzzing::read_or_refuse([&] {
-    const wavelet::TreeSet set = wavelet::open_tree_set(file.path(), wavelet::Check::WhenUsed);
-    fuzzing::walk(set);
+  return fuzzing::read_file(data, size, [](const std::string& path) {
+    fuzzing::walk(wavelet::open_tree_set(path, wavelet::Check::WhenUsed));
   });
-  return 0;
 }

@@ -9,14 +9,11 @@
 using namespace haarlight;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static fuzzing::MemoryFile file;
-  file.assign(fuzzing::bytes_of(data, size));
-  fuzzing::read_or_refuse([&] {
-    const image::ExrMapSource source(file.path());
+  fuzzing::read_file(data, size, [](const std::string& path) {
+    const image::ExrMapSource source(path);
     for (int row = 0; row < std::min(source.info().rows, 4); ++row)
       for (int column = 0; column < std::min(source.info().columns, 4); ++column)
         source.make(column, row);
   });
-  fuzzing::read_or_refuse([&] { image::read_exr(file.path()); });
-  return 0;
+  return fuzzing::read_file(data, size, [](const std::string& path) { image::read_exr(path); });
 }

@@ -16,7 +16,7 @@ constexpr std::size_t header_bytes = 12;
 constexpr std::size_t patch_bytes = 12; ///< a 32-bit index of a value, and the value
 /// One in this many of the inputs whose header is right becomes a file of the right size, which
 /// takes 100 times as long to read as any other.
-constexpr std::uint64_t whole_file_interval = 64;
+constexpr std::uint64_t whole_file_interval = 1024;
 
 /// Bytes of the file that a header asks for; 0 if the header is one to refuse.
 std::uint64_t whole_size(std::span<const std::byte> header) {

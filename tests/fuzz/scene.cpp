@@ -6,8 +6,6 @@
 using namespace haarlight;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static fuzzing::MemoryFile file;
-  file.assign(fuzzing::bytes_of(data, size));
-  fuzzing::read_or_refuse([&] { renderer::load_scene(file.path()); });
-  return 0;
+  return fuzzing::read_file(data, size,
+                            [](const std::string& path) { renderer::load_scene(path); });
 }

@@ -5,7 +5,7 @@
 
 #include <renderer/transfer/relight.h>
 
-#include <wavelet/base/parallel.h>
+#include <algorithm>
 
 using namespace haarlight;
 
@@ -31,15 +31,11 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const ThreadLimit limit(1);
-  static fuzzing::MemoryFile file;
-  file.assign(fuzzing::bytes_of(data, size));
-  fuzzing::read_or_refuse([&] {
-    const renderer::Transfer transfer(file.path());
+  return fuzzing::read_file(data, size, [](const std::string& path) {
+    const renderer::Transfer transfer(path);
     for (const wavelet::TreeView& tree :
          transfer.trees().first(std::min<std::size_t>(transfer.trees().size(), 64)))
       fuzzing::walk(tree);
     transfer.variation(scene_of(transfer));
   });
-  return 0;
 }

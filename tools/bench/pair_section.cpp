@@ -96,7 +96,7 @@ std::string table(const Plan& plan, const PairResult& pair, const std::string& p
   return html + "</tbody></table>\n";
 }
 
-std::string figure(const PairResult& pair, const image::Picture& picture, bool errors,
+std::string figure(const PairResult& pair, const Image& picture, bool errors,
                    const std::string& caption) {
   const Crop crop = crop_of(pair.reference);
   const std::string size = "\" width=\"" + std::to_string(crop.width * 128 / crop.height) +

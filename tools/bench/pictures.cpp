@@ -2,8 +2,8 @@
 
 #include <html/png_uri.h>
 
-#include <image/exposure.h>
 #include <image/false_colour.h>
+#include <image/png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr int shown_at_most = 128;
 
-image::Picture cropped(const image::Picture& picture, const Crop& crop) {
-  image::Picture result(crop.width, crop.height);
+Image cropped(const Image& picture, const Crop& crop) {
+  Image result(crop.width, crop.height);
   for (int y = 0; y < crop.height; ++y)
     for (int x = 0; x < crop.width; ++x)
       result.set(x, y, picture.at(crop.x + x, crop.y + y));
@@ -40,23 +40,23 @@ float floor_of(const PairResult& pair) {
 
 } // namespace
 
-Crop crop_of(const image::Picture& picture) {
+Crop crop_of(const Image& picture) {
   const int width = std::min(shown_at_most, picture.width);
   const int height = std::min(shown_at_most, picture.height);
   return {(picture.width - width) / 2, (picture.height - height) / 2, width, height};
 }
 
-std::string picture_uri(const PairResult& pair, const image::Picture& picture) {
+std::string picture_uri(const PairResult& pair, const Image& picture) {
   const Crop crop = crop_of(pair.reference);
   const float gain = image::middle_grey_gain(cropped(pair.reference, crop));
   return html::png_uri(cropped(picture, crop),
                        {std::log2(static_cast<double>(gain)), image::ToneMap::Filmic});
 }
 
-std::string error_uri(const PairResult& pair, const image::Picture& picture) {
+std::string error_uri(const PairResult& pair, const Image& picture) {
   const Crop crop = crop_of(pair.reference);
   const float floor = floor_of(pair);
-  image::Picture map(crop.width, crop.height);
+  Image map(crop.width, crop.height);
   for (int y = 0; y < crop.height; ++y)
     for (int x = 0; x < crop.width; ++x) {
       const float truth = luminance(pair.reference.at(crop.x + x, crop.y + y));
@@ -71,7 +71,7 @@ std::string error_uri(const PairResult& pair, const image::Picture& picture) {
 }
 
 std::string legend_uri() {
-  image::Picture bar(201, 1);
+  Image bar(201, 1);
   for (int x = 0; x < bar.width; ++x)
     bar.set(x, 0, image::false_colour(static_cast<float>(x - 100) / 100));
   return html::png_uri(bar);

@@ -15,14 +15,14 @@ struct Crop {
   int height = 0;
 };
 
-Crop crop_of(const image::Picture& picture);
+Crop crop_of(const Image& picture);
 
 /// An exhibit's part of the film, tone-mapped with the exposure that suits the reference.
-std::string picture_uri(const PairResult& pair, const image::Picture& picture);
+std::string picture_uri(const PairResult& pair, const Image& picture);
 
 /// The relative error of luminance, (x − r)/sqrt(r² + ε), in false colours of the root of its size:
 /// black none, yellow + 100 % or more, cyan − 100 %; white where no object is.
-std::string error_uri(const PairResult& pair, const image::Picture& picture);
+std::string error_uri(const PairResult& pair, const Image& picture);
 
 /// The colours of error_uri() from − 100 % to + 100 %, linear in the root of the error.
 std::string legend_uri();

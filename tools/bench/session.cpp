@@ -26,7 +26,7 @@ Pixels luminances_of(const Film& film, const std::vector<std::size_t>& pixels) {
   return result;
 }
 
-void add(const std::vector<float>& rgb, float share, image::Picture& mean) {
+void add(const std::vector<float>& rgb, float share, Image& mean) {
   for (std::size_t i = 0; i < rgb.size(); ++i)
     mean.rgb[i] += share * rgb[i];
 }
@@ -66,7 +66,7 @@ Runs Session::run(Points points, int spp, std::uint32_t seed, int count) const {
   options.points = points;
   options.spp = spp;
   const SceneDescription& scene = m_scene->description();
-  result.first = image::Picture(scene.width, scene.height);
+  result.first = Image(scene.width, scene.height);
   result.mean = result.first;
   for (int k = 0; k < count; ++k) {
     options.seed = seed + static_cast<std::uint32_t>(k);

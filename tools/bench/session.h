@@ -5,8 +5,8 @@
 #include <bench/plan.h>
 #include <bench/statistics.h>
 
-#include <image/image.h>
 #include <renderer/film/render.h>
+#include <wavelet/base/image.h>
 
 #include <memory>
 #include <vector>
@@ -19,8 +19,8 @@ struct Runs {
   std::vector<Pixels> luminances;  ///< of the pixels that hit an object
   Pixels variances;                ///< of those, of one run's mean: estimated within the runs
   double seconds = 0;              ///< of a film: the least of the runs
-  image::Picture first;            ///< of the first seed
-  image::Picture mean;             ///< of all
+  Image first;                     ///< of the first seed
+  Image mean;                      ///< of all
   std::vector<std::size_t> pixels; ///< indices in the film of those that hit an object
 };
 

@@ -8,6 +8,6 @@
 namespace haarlight::html {
 
 /// The picture's PNG file as a data URI. @throws Error(Output)
-std::string png_uri(const image::Picture& picture, const image::PngOptions& options = {});
+std::string png_uri(const Image& picture, const image::PngOptions& options = {});
 
 } // namespace haarlight::html

@@ -55,9 +55,21 @@ private:
   std::vector<Bin> m_bins = std::vector<Bin>(std::size_t{1} << (31 - bin_shift));
 };
 
+/// A power of two that brings the trees' coefficients into a range whose squares are floats. The
+/// curve is relative, so that it depends on no such factor.
+float common_scale(const TreeSet& set, const std::vector<MapPlace>& trees) {
+  constexpr int largest_exponent = 126;
+  float largest = 0;
+  for (const MapPlace& place : trees)
+    largest = std::max(largest, set.tree(place.column, place.row).mean.abs().maxCoeff());
+  if (!(largest > 0))
+    return 1;
+  return std::ldexp(1.0F, std::clamp(-std::ilogb(largest), -largest_exponent, largest_exponent));
+}
+
 float weighted_square(Float4 c) { return wavelet::lane_sum(c * c * wavelet::luminance_lanes); }
 
-Histogram histogram_of(const TreeSet& set, MapPlace place) {
+Histogram histogram_of(const TreeSet& set, MapPlace place, float scale) {
   const TreeView& tree = set.tree(place.column, place.row);
   Histogram histogram;
   std::uint32_t node = 0;
@@ -65,27 +77,27 @@ Histogram histogram_of(const TreeSet& set, MapPlace place) {
     for (auto left = set.level_nodes(place.column, place.row, level); left > 0; --left) {
       const wavelet::Details details = tree.details(node++);
       for (const Float4 d : {details.d1, details.d2, details.d3})
-        histogram.add(std::ldexp(weighted_square(d), -2 * level));
+        histogram.add(std::ldexp(weighted_square(scale * d), -2 * level));
     }
   return histogram;
 }
 
-Histogram histogram_of(const TreeSet& set, const std::vector<MapPlace>& trees) {
+Histogram histogram_of(const TreeSet& set, const std::vector<MapPlace>& trees, float scale) {
   Histogram sum;
   std::mutex mutex;
   parallel_for(trees.size(), [&](std::size_t i) {
-    const Histogram one = histogram_of(set, trees[i]);
+    const Histogram one = histogram_of(set, trees[i], scale);
     const std::scoped_lock lock(mutex);
     sum.add(one);
   });
   return sum;
 }
 
-double energy_of_means(const TreeSet& set, const std::vector<MapPlace>& trees) {
+double energy_of_means(const TreeSet& set, const std::vector<MapPlace>& trees, float scale) {
   double energy = 0;
   for (const MapPlace& place : trees)
     energy += static_cast<double>(
-        weighted_square(wavelet::to_lanes(set.tree(place.column, place.row).mean)));
+        weighted_square(scale * wavelet::to_lanes(set.tree(place.column, place.row).mean)));
   return energy;
 }
 
@@ -110,8 +122,9 @@ std::vector<KeptPoint> all_points(const Histogram& histogram) {
 } // namespace
 
 std::vector<KeptPoint> error_curve(const TreeSet& set, const std::vector<MapPlace>& trees) {
-  const Histogram histogram = histogram_of(set, trees);
-  double energy = energy_of_means(set, trees);
+  const float scale = common_scale(set, trees);
+  const Histogram histogram = histogram_of(set, trees, scale);
+  double energy = energy_of_means(set, trees, scale);
   for (std::size_t bin = 0; bin < histogram.size(); ++bin)
     energy += histogram.energy(bin);
   std::vector<KeptPoint> curve;

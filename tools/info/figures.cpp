@@ -7,7 +7,7 @@
 #include <html/png_uri.h>
 #include <html/text.h>
 
-#include <image/exposure.h>
+#include <image/png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ int level_of(const wavelet::TreeSet& set, bool single, std::optional<int> level)
   return std::min(level.value_or(set.levels()), static_cast<int>(std::log2(largest_side)));
 }
 
-std::string image_html(image::Picture picture, const std::string& alternative) {
+std::string image_html(Image picture, const std::string& alternative) {
   const std::string width = std::to_string(std::max(picture.width, 256));
   image::brighten(picture, image::middle_grey_gain(picture));
   return "<img class=\"wide\" width=\"" + width + "\" alt=\"" + alternative + "\" src=\"" +

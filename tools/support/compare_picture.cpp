@@ -2,7 +2,6 @@
 
 #include <support/words.h>
 
-#include <image/exposure.h>
 #include <image/false_colour.h>
 #include <image/image_exr.h>
 #include <image/png.h>
@@ -15,7 +14,7 @@
 namespace haarlight::tool {
 namespace {
 
-using image::Picture;
+using Image;
 using wavelet::Map;
 
 constexpr int smallest_side = 320; ///< that the legend's figures need

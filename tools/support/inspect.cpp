@@ -17,7 +17,12 @@ using wavelet::TreeSet;
 using wavelet::TreeView;
 
 double weighted_square(Float4 c) {
-  return static_cast<double>(wavelet::lane_sum(c * c * wavelet::luminance_lanes));
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) { // in double, which holds the square of every float
+    const auto value = static_cast<double>(c[i]);
+    sum += static_cast<double>(luminance_weights[i]) * value * value;
+  }
+  return sum;
 }
 
 LevelFigures measure_level(const TreeView& tree, std::uint32_t begin, std::uint32_t count,

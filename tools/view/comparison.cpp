@@ -19,7 +19,7 @@ double Drawing::time(int level) const {
 }
 
 std::vector<float> read_reference(const std::string& path, int width, int height) {
-  image::Picture reference = image::read_exr(path);
+  Image reference = image::read_exr(path);
   if (reference.width != width || reference.height != height)
     throw_input_error(path, "is " + std::to_string(reference.width) + "x" +
                                 std::to_string(reference.height) +

@@ -8,7 +8,7 @@
 namespace haarlight::view {
 
 void write_frame(const Options& options, const DrawnFrame& frame, int width, int height) {
-  image::Picture picture(width, height);
+  Image picture(width, height);
   picture.rgb = frame.rgb;
   if (tool::has_extension(options.frame, ".png"))
     image::write_png(options.frame, picture, {options.exposure, image::ToneMap::Filmic});

@@ -1,8 +1,8 @@
 #pragma once
 // The viewer's window.
 
-#include <image/image.h>
 #include <view/frame.h>
+#include <wavelet/base/image.h>
 
 #include <functional>
 #include <optional>
@@ -46,7 +46,7 @@ struct WindowReport {
   double accesses = 0;     ///< of textures per pixel, of the left picture at last
   int reloads = 0;         ///< that went well
   int refusals = 0;        ///< that did not
-  image::Picture picture;  ///< if asked for
+  Image picture;           ///< if asked for
 };
 
 /// Shows a window until the user closes it or the script ends.

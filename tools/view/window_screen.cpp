@@ -125,7 +125,7 @@ Gestures Screen::begin(double patience) {
   return found;
 }
 
-void Screen::end(image::Picture* picture) {
+void Screen::end(Image* picture) {
   ImGui::Render();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

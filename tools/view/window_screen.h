@@ -1,9 +1,9 @@
 #pragma once
 // A window on the screen, with OpenGL 3.3 and controls over it.
 
-#include <image/image.h>
 #include <view/gl_objects.h>
 #include <view/window_gestures.h>
+#include <wavelet/base/image.h>
 
 #include <memory>
 #include <string>
@@ -28,7 +28,7 @@ public:
   Gestures begin(double patience);
   /// Puts the controls over what was drawn; then it can be seen.
   /// @param picture receives all that, if not null
-  void end(image::Picture* picture);
+  void end(Image* picture);
 
   /// All of the window, pixels.
   Area area() const;

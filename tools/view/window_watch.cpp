@@ -7,22 +7,20 @@
 #include <filesystem>
 #include <fstream>
 
-#include <stdlib.h>
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace haarlight::view {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A new folder, for nobody else.
-std::string make_folder() {
+std::string temporary_root() {
   std::error_code none;
   const fs::path root = fs::temp_directory_path(none);
-  std::string name = ((root.empty() ? fs::path("/tmp") : root) / "haarview.XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw_output_error(name, std::string("cannot be made: ") + std::strerror(errno));
-  return name;
+  return root.empty() ? "/tmp" : root.string();
 }
 
 void copy_bytes(const std::string& from, const std::string& to) {
@@ -70,20 +68,25 @@ FileWatch::Stamp FileWatch::stamp() const {
   return result;
 }
 
-FileCopy::FileCopy(const std::string& path)
-    : m_original(path), m_folder(make_folder()), m_path(m_folder + '/' + base_name(path)) {
-  try {
-    copy_bytes(path, m_path);
-  } catch (const Error&) {
-    std::error_code none;
-    fs::remove_all(m_folder, none);
-    throw;
+TemporaryFolder::TemporaryFolder() : m_name(temporary_path(temporary_root())) {
+  remove_leftovers(temporary_root());
+  const std::string name = m_name.path();
+  const SignalHold hold;
+  if (::mkdir(name.c_str(), S_IRWXU) != 0) {
+    const int error = errno;
+    m_name.release();
+    throw_output_error(name, std::string("cannot be made: ") + std::strerror(error));
   }
+  m_lock = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (m_lock < 0 || ::flock(m_lock, LOCK_EX | LOCK_NB) != 0)
+    throw_output_error(name, std::string("cannot be locked: ") + std::strerror(errno));
 }
 
-FileCopy::~FileCopy() {
-  std::error_code none;
-  fs::remove_all(m_folder, none);
+TemporaryFolder::~TemporaryFolder() { ::close(m_lock); }
+
+FileCopy::FileCopy(const std::string& path)
+    : m_original(path), m_copy(m_folder.path() + '/' + base_name(path)) {
+  copy_bytes(path, m_copy.path());
 }
 
 void FileCopies::take(std::string& path) {

@@ -2,6 +2,7 @@
 // Files that may be rewritten while they are shown.
 
 #include <wavelet/base/error.h>
+#include <wavelet/file/temporary_name.h>
 
 #include <cstdint>
 #include <list>
@@ -29,25 +30,39 @@ private:
   Stamp m_latest; ///< when last asked
 };
 
-/// A copy of a file's bytes, which goes with the object: a mapping of it is safe from whoever
-/// truncates the file.
+/// A folder for temporary files, made for this object. It is locked, so that only leftovers of dead
+/// processes are removed.
+class TemporaryFolder {
+public:
+  /// @throws Error(Output) if it cannot be made
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::string& path() const { return m_name.path(); }
+
+private:
+  TemporaryName m_name;
+  int m_lock = -1;
+};
+
+/// A copy of a file's bytes, safe from programs that rewrite the file. It is removed with the
+/// object, and when a signal ends the process.
 class FileCopy {
 public:
   /// @throws Error(Input) if the file cannot be read, Error(Output) if the folder for temporary
   ///         files takes no copy
   explicit FileCopy(const std::string& path);
-  ~FileCopy();
-  FileCopy(const FileCopy&) = delete;
-  FileCopy& operator=(const FileCopy&) = delete;
 
   /// Of the same name, in a folder of its own.
-  const std::string& path() const { return m_path; }
+  const std::string& path() const { return m_copy.path(); }
   const std::string& original() const { return m_original; }
 
 private:
   std::string m_original;
-  std::string m_folder;
-  std::string m_path;
+  TemporaryFolder m_folder;
+  TemporaryName m_copy; ///< destroyed before its folder
 };
 
 /// Copies of the files that something is made of.

@@ -5,7 +5,6 @@
 // Values are f_r in sr⁻¹, without cosine; 0 where wi or wo is not above the horizon.
 
 #include <brdf/half_difference.h>
-#include <brdf/large_pages.h>
 #include <brdf/merl_file.h>
 
 #include <wavelet/base/geometry.h>
@@ -13,8 +12,11 @@
 
 #include <array>
 #include <cstddef>
+#include <new>
 #include <string>
 #include <vector>
+
+#include <sys/mman.h>
 
 namespace haarlight::brdf {
 
@@ -26,7 +28,7 @@ enum class Lookup {
 /// `trilinear` or `nearest`.
 const char* lookup_name(Lookup lookup);
 
-/// How many pairs of directions the bulk functions take at most.
+/// Largest number of direction pairs in a batch.
 inline constexpr int batch_capacity = 64;
 
 /// Pairs of directions in the local frame, by component.
@@ -53,19 +55,44 @@ struct HalfDifferenceBatch {
   }
 };
 
+/// Allocator for tables of many MB that are accessed at random: on large pages where the system has
+/// them.
+template <class T>
+struct LargePages {
+  using value_type = T;
+  static constexpr std::size_t page = std::size_t{1} << 21U;
+
+  LargePages() = default;
+  template <class U>
+  explicit LargePages(const LargePages<U>& /*other*/) {}
+
+  T* allocate(std::size_t count) {
+    void* memory = ::operator new (count * sizeof(T), std::align_val_t{page});
+    ::madvise(memory, count * sizeof(T), MADV_HUGEPAGE);
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t /*count*/) {
+    ::operator delete (memory, std::align_val_t{page});
+  }
+  template <class U>
+  bool operator==(const LargePages<U>& /*other*/) const {
+    return true;
+  }
+};
+
 class MeasuredBrdf {
 public:
   /// @throws Error(Input) as read_merl()
   explicit MeasuredBrdf(const std::string& path, Lookup lookup = Lookup::Trilinear);
 
-  /// @param name what provenance calls the table
+  /// @param name of the table in provenance
   explicit MeasuredBrdf(const MerlTable& table, Lookup lookup = Lookup::Trilinear,
                         const std::string& name = "table");
 
   /// f_r in sr⁻¹.
   Rgb evaluate(const Vec3& local_wi, const Vec3& local_wo) const;
 
-  /// The same for many pairs, with the same bits, several times faster.
+  /// The same for many pairs: identical bits, several times faster.
   /// @param values `batch.count` results: R, G, B and 1 (0 where no valid cell is near)
   void evaluate(const DirectionBatch& batch, Float4* values) const;
 
@@ -107,13 +134,14 @@ private:
     Float4 value;
   };
 
-  /// Place of a cell in m_cells.
+  /// Index of a cell in m_cells.
   int index(int theta_h, int theta_d, int padded_phi_d) const {
     return (theta_h * merl_theta_d_bins + theta_d) * (m_phi_d_bins + 2) + padded_phi_d;
   }
   void fill(const MerlTable& table);
   void pad_rows();
-  Float4 interpolate(int cell, float theta_h_share, float theta_d_share, float phi_d_share) const;
+  Float4 interpolate(int cell, float theta_h_weight, float theta_d_weight,
+                     float phi_d_weight) const;
 
   Lookup m_lookup;
   int m_phi_d_bins;

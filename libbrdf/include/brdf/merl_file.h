@@ -10,6 +10,7 @@
 // cannot be told apart.
 
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,17 @@ inline constexpr int merl_theta_d_bins = 90;
 inline constexpr int merl_phi_d_bins = 180;
 /// The variant without the reciprocity fold.
 inline constexpr int merl_unfolded_phi_d_bins = 360;
+
+/// Angles of bin centres, radians.
+inline double theta_h_centre(int bin) {
+  const double root = (bin + 0.5) / merl_theta_h_bins;
+  return root * root * (std::numbers::pi / 2);
+}
+inline double theta_d_centre(int bin) {
+  return (bin + 0.5) / merl_theta_d_bins * (std::numbers::pi / 2);
+}
+/// For either number of bins: both have one per degree.
+inline double phi_d_centre(int bin) { return (bin + 0.5) / merl_phi_d_bins * std::numbers::pi; }
 
 /// f_r of channel c in sr⁻¹ = raw value · merl_scale[c].
 inline constexpr double merl_scale[3] = {1.00 / 1500, 1.15 / 1500, 1.66 / 1500};

@@ -1,4 +1,4 @@
-#include "file/pfm_reader.h"
+#include "file/image_formats.h"
 
 #include <wavelet/base/error.h>
 
@@ -116,14 +116,16 @@ Image read_pfm(std::span<const std::byte> bytes, const std::string& path,
   const PfmHeader header = PfmHeaderParser(bytes, path).parse();
   check_size(header, bytes.size(), path);
   const bool swap = (header.scale < 0) != (std::endian::native == std::endian::little);
-  const auto scale = static_cast<float>(std::abs(header.scale));
+  const double scale = std::abs(header.scale); // may exceed the range of float where values do not
   Image image(static_cast<int>(header.width), static_cast<int>(header.height));
   const std::byte* from = bytes.data() + header.data_offset;
   for (int y = image.height - 1; y >= 0; --y)
     for (int x = 0; x < image.width; ++x, from += header.channels * sizeof(float)) {
       float* to = image.rgb.data() + image.offset(x, y);
       for (std::size_t c = 0; c < 3; ++c)
-        to[c] = scale * decode(from + (header.channels == 1 ? 0 : c * sizeof(float)), swap);
+        to[c] = static_cast<float>(
+            scale * static_cast<double>(
+                        decode(from + (header.channels == 1 ? 0 : c * sizeof(float)), swap)));
     }
   if (scale != 1)
     notes.emplace_back("values were multiplied by the scale of the PFM header");

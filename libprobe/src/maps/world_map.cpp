@@ -2,8 +2,7 @@
 
 #include "mapping/mapping_lanes.h"
 #include "mapping/point_kernels.h"
-#include "maps/peaks.h"
-#include "maps/pixel_coverage.h"
+#include "maps/area_sum.h"
 
 #include <wavelet/base/parallel.h>
 
@@ -28,12 +27,6 @@ constexpr int most_samples_along = 64;
 constexpr double coarse_pixel = 16;
 constexpr double small_probe = 65536;
 
-Float4 load(const float* values) {
-  Float4 result;
-  __builtin_memcpy(&result, values, sizeof result);
-  return result;
-}
-
 Vec3 pixel_centre(int x, int y, int size) {
   return wavelet::square_to_sphere(Vec2((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
                                         (static_cast<float>(y) + 0.5F) / static_cast<float>(size)));
@@ -41,7 +34,7 @@ Vec3 pixel_centre(int x, int y, int size) {
 
 /// The probe as four floats for each pixel, row by row: radiance in units of `unit`, and 1; all 0
 /// for pixels that are not left to sampling.
-std::vector<float> sampled_pixels(const Probe& probe, const std::vector<PixelPlace>& exact,
+std::vector<float> sampled_pixels(const Probe& probe, const std::vector<SourcePixel>& exact,
                                   float unit) {
   const auto width = static_cast<std::size_t>(probe.width());
   std::vector<float> pixels(4 * width * static_cast<std::size_t>(probe.height()));
@@ -53,9 +46,9 @@ std::vector<float> sampled_pixels(const Probe& probe, const std::vector<PixelPla
       pixel[3] = 1;
     }
   });
-  for (const PixelPlace& place : exact)
-    std::fill_n(pixels.data() + 4 * (static_cast<std::size_t>(place.y) * width +
-                                     static_cast<std::size_t>(place.x)),
+  for (const SourcePixel& pixel : exact)
+    std::fill_n(pixels.data() + 4 * (static_cast<std::size_t>(pixel.y) * width +
+                                     static_cast<std::size_t>(pixel.x)),
                 4, 0.0F);
   return pixels;
 }
@@ -118,8 +111,8 @@ private:
       Float4 even = {};
       Float4 odd = {};
       for (std::size_t k = i; k < i + 8; k += 2) {
-        even += load(m_pixels.data() + 4 * static_cast<std::size_t>(texels[k]));
-        odd += load(m_pixels.data() + 4 * static_cast<std::size_t>(texels[k + 1]));
+        even += load_pixel(m_pixels.data() + 4 * static_cast<std::size_t>(texels[k]));
+        odd += load_pixel(m_pixels.data() + 4 * static_cast<std::size_t>(texels[k + 1]));
       }
       sum += even + odd;
     }
@@ -132,85 +125,18 @@ private:
   int m_supersample;
 };
 
-/// Adds the probe pixels that are not left to sampling, by the area that each covers.
-class ExactPart {
-public:
-  ExactPart(const Probe& probe, float unit, wavelet::Map& map)
-      : m_probe(probe), m_unit(unit), m_map(map),
-        m_covered(static_cast<std::size_t>(map.size) * static_cast<std::size_t>(map.size)) {}
-
-  /// Pixels are clipped side by side but added in their order, a batch at a time.
-  void add(const std::vector<PixelPlace>& places) {
-    constexpr std::size_t batch = 4096;
-    constexpr std::size_t group = 64;
-    std::vector<Group> groups(batch / group);
-    for (std::size_t begin = 0; begin < places.size(); begin += batch) {
-      const auto part = std::span(places).subspan(begin, std::min(batch, places.size() - begin));
-      parallel_for((part.size() + group - 1) / group, [&](std::size_t g) {
-        const std::size_t from = g * group;
-        clip(part.subspan(from, std::min(group, part.size() - from)), groups[g]);
-      });
-      for (std::size_t i = 0; i < part.size(); ++i)
-        add_pixel(part[i], groups[i / group], i % group);
-    }
+/// The pixels that are added by area, in units of `unit`.
+std::vector<SourcePixel> exact_pixels(const Probe& probe, bool all, float unit) {
+  std::vector<SourcePixel> pixels;
+  if (all) {
+    for (int y = 0; y < probe.height(); ++y)
+      for (int x = 0; x < probe.width(); ++x)
+        pixels.push_back({x, y, probe.pixel(x, y) / unit});
+    return pixels;
   }
-
-  /// Fraction of a map pixel that the pixels added cover.
-  float covered(int x, int y) const { return m_covered[m_map.offset(x, y) / 3]; }
-
-private:
-  struct Group {
-    std::vector<CoveredPixel> covered;
-    std::vector<std::size_t> ends; ///< in covered, of each probe pixel
-  };
-
-  void clip(std::span<const PixelPlace> places, Group& group) const {
-    group.covered.clear();
-    group.ends.clear();
-    PixelCoverage coverage(m_probe, m_map.size);
-    for (const PixelPlace& place : places) {
-      coverage.append(place.x, place.y, group.covered);
-      group.ends.push_back(group.covered.size());
-    }
-  }
-
-  void add_pixel(const PixelPlace& place, const Group& group, std::size_t i) {
-    const Rgb radiance = m_probe.pixel(place.x, place.y) / m_unit;
-    for (std::size_t k = i == 0 ? 0 : group.ends[i - 1]; k < group.ends[i]; ++k) {
-      const CoveredPixel& pixel = group.covered[k];
-      Eigen::Map<Rgb>(m_map.rgb.data() + 3 * std::size_t{pixel.index}) += pixel.fraction * radiance;
-      m_covered[pixel.index] += pixel.fraction;
-    }
-  }
-
-  const Probe& m_probe;
-  float m_unit;
-  wavelet::Map& m_map;
-  std::vector<float> m_covered;
-};
-
-std::vector<PixelPlace> all_places(const Probe& probe) {
-  std::vector<PixelPlace> places;
-  for (int y = 0; y < probe.height(); ++y)
-    for (int x = 0; x < probe.width(); ++x)
-      places.push_back({x, y});
-  return places;
-}
-
-/// A power of two by which the probe's radiances are divided so that sums of samples stay finite; 1
-/// for all but extreme ones.
-float radiance_unit(const Probe& probe) {
-  float largest = 0;
-  for (int y = 0; y < probe.height(); ++y)
-    for (int x = 0; x < probe.width(); ++x)
-      largest = std::max(largest, probe.pixel(x, y).maxCoeff());
-  return largest > 0x1p96F ? 0x1p32F : 1.0F;
-}
-
-/// The mean of a map pixel, convex in the radiances of the probe's pixels.
-Rgb combined(const Rgb& exact_sum, float covered, const Rgb& others) {
-  const float rest = std::max(0.0F, 1 - covered);
-  return (exact_sum + rest * others) / (covered + rest);
+  for (const PixelPlace& place : find_peaks(probe))
+    pixels.push_back({place.x, place.y, probe.pixel(place.x, place.y) / unit});
+  return pixels;
 }
 
 } // namespace
@@ -221,12 +147,12 @@ wavelet::Map world_map(const Probe& probe, int size, int supersample) {
   const double probe_pixels = static_cast<double>(probe.width()) * probe.height();
   const bool coarse = probe_pixels <= std::max(small_probe, map_pixels / coarse_pixel);
   const float unit = radiance_unit(probe);
-  const std::vector<PixelPlace> places = coarse ? all_places(probe) : find_peaks(probe);
-  wavelet::Map map(size);
-  ExactPart exact(probe, unit, map);
-  exact.add(places);
+  const std::vector<SourcePixel> exact_part = exact_pixels(probe, coarse, unit);
+  AreaSum exact(size);
+  exact.add(PixelCoverage({probe.mapping(), probe.width(), probe.height()}, size), exact_part);
   const std::vector<float> pixels =
-      coarse ? std::vector<float>() : sampled_pixels(probe, places, unit);
+      coarse ? std::vector<float>() : sampled_pixels(probe, exact_part, unit);
+  wavelet::Map map(size);
   with_mapping(probe.mapping(), [&](auto mapping) {
     const Gatherer<decltype(mapping)> gatherer(probe, pixels, size, supersample);
     parallel_for(static_cast<std::size_t>(size), [&](std::size_t row) {
@@ -237,7 +163,7 @@ wavelet::Map world_map(const Probe& probe, int size, int supersample) {
           others = gatherer.average(x, y);
         if (!others) // a few thousandths of the pixel at most
           others = probe.radiance(pixel_centre(x, y, size)) / unit;
-        const Rgb mean = combined(map.at(x, y), exact.covered(x, y), *others);
+        const Rgb mean = exact.mean(x, y, *others);
         map.set(x, y, (mean * unit).min(std::numeric_limits<float>::max()));
       }
     });

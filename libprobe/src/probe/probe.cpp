@@ -7,6 +7,7 @@
 #include <wavelet/base/parallel.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -32,37 +33,73 @@ double latlong_pixel(int y, int width, int height) {
   return 4.0 * pi / width * middle * half;
 }
 
-/// Four-point Gauss quadrature of the density over a pixel that lies wholly in the map.
+constexpr float gauss = 0.28867513F; ///< of two points, from the middle of an interval of length 1
+
+/// Gauss quadrature of the density over a pixel that lies wholly in the map, of 2 × 2 points, and
+/// of 2 × 2 in each part of the pixels of small pictures.
 template <class Map>
 double whole_pixel(Map map, int x, int y, int width, int height) {
-  constexpr float g = 0.28867513F;
-  const Float4 u =
-      (static_cast<float>(x) + 0.5F + Float4{-g, g, -g, g}) / static_cast<float>(width);
-  const Float4 v =
-      (static_cast<float>(y) + 0.5F + Float4{-g, -g, g, g}) / static_cast<float>(height);
-  const Float4 d = map.density(u, v);
-  return 0.25 * (static_cast<double>(d[0]) + d[1] + d[2] + d[3]) / width / height;
+  constexpr int least_width = 16;
+  const int parts = (least_width + width - 1) / width;
+  const auto along = static_cast<float>(parts);
+  double sum = 0;
+  for (int j = 0; j < parts; ++j)
+    for (int i = 0; i < parts; ++i) {
+      const float column = static_cast<float>(x * parts + i) + 0.5F;
+      const float row = static_cast<float>(y * parts + j) + 0.5F;
+      const Float4 u =
+          (column + Float4{-gauss, gauss, -gauss, gauss}) / (along * static_cast<float>(width));
+      const Float4 v =
+          (row + Float4{-gauss, -gauss, gauss, gauss}) / (along * static_cast<float>(height));
+      const Float4 d = map.density(u, v);
+      sum += static_cast<double>(d[0]) + d[1] + d[2] + d[3];
+    }
+  return 0.25 * sum / (parts * parts) / width / height;
 }
 
-/// A pixel the rim runs through: strips across it, each of the length that lies inside.
+/// Strips across a pixel of the rim, each of the length that lies inside, for a in [from, to]. That
+/// length may go with the square root of the distance from either end, so that a is substituted by
+/// a cubic that is flat at both.
+template <class Map>
+double rim_strips(Map map, const PixelRectangle& pixel, float from, float to) {
+  constexpr int strips = 12;
+  const auto place = [](int i, float point) { return (static_cast<float>(i) + point) / strips; };
+  double sum = 0;
+  for (int i = 0; i < strips; ++i)
+    for (const float point_a : {0.5F - gauss, 0.5F + gauss}) {
+      const float t = place(i, point_a);
+      const float a = from + (to - from) * t * t * (3 - 2 * t);
+      float b_from = 0;
+      float b_to = 0;
+      pixel.rows(a, b_from, b_to);
+      double strip = 0;
+      for (int j = 0; j < strips; ++j)
+        for (const float point_b : {0.5F - gauss, 0.5F + gauss}) {
+          const float b = b_from + (b_to - b_from) * place(j, point_b);
+          strip += static_cast<double>(map.density(0.5F + 0.5F * a, 0.5F + 0.5F * b));
+        }
+      sum += strip * (b_to - b_from) * (6 * t * (1 - t));
+    }
+  return 0.25 * sum * (to - from) / (4 * strips * strips);
+}
+
+/// A pixel the rim runs through, divided where the rim meets its edges.
 template <class Map>
 double rim_pixel(Map map, const PixelRectangle& pixel) {
-  constexpr int strips = 16;
-  float a_from = 0;
-  float a_to = 0;
-  pixel.columns(a_from, a_to);
+  float from = 0;
+  float to = 0;
+  pixel.columns(from, to);
+  const float corner0 = std::sqrt(std::max(0.0F, 1 - pixel.b0 * pixel.b0));
+  const float corner1 = std::sqrt(std::max(0.0F, 1 - pixel.b1 * pixel.b1));
+  std::array<float, 6> ends = {from, -corner0, -corner1, corner0, corner1, to};
+  for (float& end : ends)
+    end = std::clamp(end, from, to);
+  std::sort(ends.begin(), ends.end());
   double sum = 0;
-  for (int i = 0; i < strips; ++i) {
-    const float a = a_from + (a_to - a_from) * (static_cast<float>(i) + 0.5F) / strips;
-    float b_from = 0;
-    float b_to = 0;
-    pixel.rows(a, b_from, b_to);
-    for (int j = 0; j < strips; ++j) {
-      const float b = b_from + (b_to - b_from) * (static_cast<float>(j) + 0.5F) / strips;
-      sum += static_cast<double>(map.density(0.5F + 0.5F * a, 0.5F + 0.5F * b)) * (b_to - b_from);
-    }
-  }
-  return 0.25 * sum * (a_to - a_from) / (strips * strips);
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+    if (ends[i] < ends[i + 1])
+      sum += rim_strips(map, pixel, ends[i], ends[i + 1]);
+  return sum;
 }
 
 template <class Map>

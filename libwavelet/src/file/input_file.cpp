@@ -4,6 +4,7 @@
 
 #include <wavelet/base/available_memory.h>
 #include <wavelet/base/error.h>
+#include <wavelet/base/out_of_memory.h>
 
 #include <xxhash.h>
 
@@ -13,7 +14,6 @@
 #include <cerrno>
 #include <cstring>
 #include <mutex>
-#include <new>
 #include <utility>
 
 #include <fcntl.h>
@@ -85,7 +85,7 @@ void InputFile::allocate() {
   void* address = ::mmap(nullptr, m_size, PROT_READ | PROT_WRITE,
                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (address == MAP_FAILED)
-    throw std::bad_alloc();
+    throw OutOfMemory("the contents of " + m_path, m_size);
   m_data = static_cast<std::byte*>(address);
 }
 

@@ -1,5 +1,6 @@
 #include <wavelet/transform/compress.h>
 
+#include "transform/coefficient_walk.h"
 #include "tree/map_batches.h"
 #include "tree/tree_builder.h"
 
@@ -40,8 +41,8 @@ void measure_pixels(const Map& original, const Map& kept, int channels, Compress
     if (channels == 1)
       a = Rgb::Constant(luminance(a));
     const Rgb error = b - a;
-    report.energy += area * static_cast<double>(luminance(a * a));
-    report.squared_error += area * static_cast<double>(luminance(error * error));
+    report.energy += area * weighted_square(a.data());
+    report.squared_error += area * weighted_square(error.data());
     report.peak = std::max(report.peak, static_cast<double>(a.abs().maxCoeff()));
     report.largest_error =
         std::max(report.largest_error, static_cast<double>(error.abs().maxCoeff()));

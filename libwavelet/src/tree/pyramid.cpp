@@ -11,6 +11,7 @@ namespace {
 /// One level of averages of a function: R, G, B and the mean square of luminance.
 struct Level {
   int side = 0;
+  float unit = 1; ///< a power of two that the function is divided by, so that squares stay in range
   std::vector<Float4> moments;
 
   /// The square at (x, y); coordinates one step outside wrap around the octahedron: across an edge
@@ -31,12 +32,20 @@ struct Level {
   }
 };
 
+/// The power of two next below the largest absolute value; 1 for a function that is 0.
+float unit_of(const Map& map) {
+  float largest = 0;
+  for (const float value : map.rgb)
+    largest = std::max(largest, std::abs(value));
+  return largest > 0 ? power_of_two(std::max(std::ilogb(largest), -126)) : 1.0F;
+}
+
 Level finest_level(const TreeView& tree) {
   const Map map = tree.reconstruct(tree.levels);
-  Level level = {map.size, {}};
+  Level level = {map.size, unit_of(map), {}};
   level.moments.resize(map.rgb.size() / 3);
   for (std::size_t i = 0; i < level.moments.size(); ++i) {
-    const Rgb c = Eigen::Map<const Rgb>(map.rgb.data() + 3 * i);
+    const Rgb c = Eigen::Map<const Rgb>(map.rgb.data() + 3 * i) / level.unit;
     const float y = luminance(c);
     level.moments[i] = Float4{c[0], c[1], c[2], y * y};
   }
@@ -44,7 +53,7 @@ Level finest_level(const TreeView& tree) {
 }
 
 Level coarser(const Level& fine) {
-  Level level = {fine.side / 2, {}};
+  Level level = {fine.side / 2, fine.unit, {}};
   level.moments.resize(fine.moments.size() / 4);
   for (int y = 0; y < level.side; ++y)
     for (int x = 0; x < level.side; ++x)
@@ -115,7 +124,7 @@ struct Pyramid::EntryTiles {
       for (int x = -1; x <= tile_side; ++x) {
         const int column = std::min(tx * tile_side + x, level.side);
         const int row = std::min(ty * tile_side + y, level.side);
-        const Float4 value = with_deviation(level.at(column, row));
+        const Float4 value = with_deviation(level.at(column, row)) * level.unit;
         for (int c = 0; c < 4; ++c)
           texels.push_back(upper_half(value[c]));
       }

@@ -3,50 +3,53 @@
 
 #include <renderer/film/render.h>
 
-#include <array>
+#include <span>
 
 namespace haarlight::renderer {
 
-/// Of the samples that one technique drew, luminances: independent and identically distributed if
-/// points are random.
-struct TechniqueSums {
-  std::uint32_t count = 0;
-  double shadowed = 0;        ///< Σ w v
-  double unshadowed = 0;      ///< Σ w
-  double shadowed_square = 0; ///< Σ w² v
-  double square = 0;          ///< Σ w²
-
-  void add(const TechniqueSums& other);
+/// What a sample contributes, as its variance is estimated from.
+struct Contribution {
+  double luminance = 0; ///< of w = f_r L cos / p, its unshadowed contribution
+  bool visible = false;
+  Technique technique = Technique::First;
+  FirstWeights first = {};
 };
+
+/// Variances of Σ w v and Σ w over the samples of a pass, which are independent of each other, from
+/// these samples alone: unbiased for random points, whatever the numbers of samples, if there are
+/// two at least. Where a technique drew a single sample an estimate may be negative. Directions
+/// that are the same for every seed have no variance.
+SumVariance variance_of_sums(std::span<const Contribution> samples);
 
 /// w = f_r L cos / p is a sample's unshadowed contribution, v ∈ {0, 1} its visibility.
 struct PixelSums {
-  Rgb shadowed = Rgb::Zero();   ///< Σ w v
-  Rgb unshadowed = Rgb::Zero(); ///< Σ w
-  Rgb emitted = Rgb::Zero();    ///< by the visible surface; adds to every estimate
-  Rgb product = Rgb::Zero();    ///< L_ns of the product, as of the last pass
-  std::array<TechniqueSums, random_techniques> techniques;
-  SumVariance shared; ///< of Σ w v and Σ w, besides that of independent samples
-  double pdf = 0;     ///< Σ p
+  Rgb shadowed = Rgb::Zero();       ///< Σ w v
+  Rgb unshadowed = Rgb::Zero();     ///< Σ w
+  Rgb emitted = Rgb::Zero();        ///< by the visible surface; adds to every estimate
+  Rgb product = Rgb::Zero();        ///< L_ns of the product, as of the last pass
+  SumVariance variance;             ///< of Σ w v and Σ w over the passes of two or more samples
+  std::uint32_t variance_count = 0; ///< samples of these passes
+  double pdf = 0;                   ///< Σ p
   std::uint32_t count = 0;
   std::uint32_t directions = 0; ///< above the horizon, for the bidirectional estimator
   std::uint32_t visible = 0;    ///< of those, unoccluded
 
-  void add(const Rgb& weight, bool v, float p, Technique technique);
+  void add(const Rgb& weight, bool v, float p);
 
   /// For the bidirectional estimator: a direction above the horizon.
   void add_direction(bool v);
 
-  /// Adds the variance that a pass's samples share.
-  void add_shared(const SumVariance& variance);
+  /// Adds the variance of a pass's sums. A pass of one sample says nothing of its variance.
+  /// @param samples of the pass
+  void add_variance(const SumVariance& of_pass, std::uint32_t samples);
 };
 
 /// A pixel's radiance.
 Rgb estimate(const PixelSums& sums, Estimator estimator);
 
-/// Estimated variance of its luminance; 0 with fewer than two samples. A technique of a single
-/// sample has no variance of its own: all samples are then taken as draws of one mixture, which
-/// adds the variance between the techniques' means.
+/// Estimated variance of its luminance. Passes of a single sample are taken to vary as the others
+/// do; 0 if there are no others. Unbiased for the unbiased estimator and random points, and so
+/// negative at times where a technique drew a single sample.
 double estimate_variance(const PixelSums& sums, Estimator estimator);
 
 } // namespace haarlight::renderer

@@ -27,14 +27,15 @@ public:
     if (const auto unshadowed = m_light.unshadowed())
       sums.product = *unshadowed;
     m_light.sample(pass);
-    m_visible.resize(pass.count);
+    m_contributions.resize(pass.count);
     for (std::size_t i = 0; i < pass.count; ++i) {
       const bool visible =
           m_estimator == Estimator::Bidirectional ? add_direction(i, sums) : m_light.visible(i);
-      m_visible[i] = visible ? 1 : 0;
-      sums.add(m_light.weight(i), visible, m_light.pdf(i), m_light.technique(i));
+      const Rgb weight = m_light.weight(i);
+      sums.add(weight, visible, m_light.pdf(i));
+      m_contributions[i] = m_light.contribution(i, weight, visible);
     }
-    sums.add_shared(m_light.shared_variance(m_visible));
+    sums.add_variance(m_light.variance_of_sums(m_contributions), pass.count);
   }
 
 private:
@@ -47,7 +48,7 @@ private:
 
   Estimator m_estimator;
   LightSamples m_light;
-  std::vector<std::uint8_t> m_visible; ///< of the pass's samples
+  std::vector<Contribution> m_contributions; ///< of the pass's samples
 };
 
 SamplerOptions sampling_of(const RenderOptions& options) {

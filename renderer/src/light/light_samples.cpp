@@ -81,6 +81,15 @@ std::optional<bool> LightSamples::unoccluded(std::size_t i) const {
   return trace(i);
 }
 
+SumVariance LightSamples::variance_of_sums(std::span<const Contribution> samples) {
+  m_visible.clear();
+  for (const Contribution& sample : samples)
+    m_visible.push_back(sample.visible ? 1 : 0);
+  SumVariance sum = renderer::variance_of_sums(samples);
+  sum += m_sampler->shared_variance(m_visible);
+  return sum;
+}
+
 bool LightSamples::trace(std::size_t i) const {
   const Vec3 w = m_scene.light().to_world(m_directions[i].direction);
   return !m_scene.shapes().occluded(leave(m_seen->hit, w));

@@ -2,6 +2,7 @@
 // Samples of the distant light at the points that pixels see, by the chosen sampler.
 
 #include "film/film_rendering.h"
+#include "film/pixel_sums.h"
 
 #include <optional>
 #include <vector>
@@ -39,10 +40,15 @@ public:
   float pdf(std::size_t i) const { return m_directions[i].pdf; }
   Technique technique(std::size_t i) const { return m_directions[i].technique; }
 
-  /// As Sampler's.
-  SumVariance shared_variance(std::span<const std::uint8_t> visible) const {
-    return m_sampler->shared_variance(visible);
+  /// @param weight as weight(i)
+  Contribution contribution(std::size_t i, const Rgb& weight, bool visible) const {
+    const DirectionSample& s = m_directions[i];
+    return {static_cast<double>(luminance(weight)), visible, s.technique, s.first};
   }
+
+  /// Variances of Σ w v and Σ w over the pass's samples.
+  /// @param samples all of them
+  SumVariance variance_of_sums(std::span<const Contribution> samples);
 
 private:
   bool trace(std::size_t i) const;
@@ -57,6 +63,7 @@ private:
   std::vector<Vec3> m_candidates;
   std::vector<Rgb> m_reflected; ///< f_r L cos
   std::vector<Rgb> m_radiance;
+  std::vector<std::uint8_t> m_visible; ///< of the pass's samples
 };
 
 } // namespace haarlight::renderer

@@ -40,14 +40,21 @@ public:
     const PathPoints points = {m_options.points, hash_words(seen.pixel, m_options.seed)};
     m_values.assign(pass.count, Rgb::Zero());
     m_pdfs.assign(pass.count, 0);
-    m_techniques.assign(pass.count, Technique::First);
     m_vertex.arrive(seen.hit, seen.wo, m_counts);
-    add_light(seen, pass, points, sums);
+    SumVariance variance = add_light(seen, pass, points);
+    m_rest.resize(pass.count); // the light's samples are counted by themselves
+    for (std::size_t i = 0; i < pass.count; ++i)
+      m_rest[i].luminance = m_light ? -static_cast<double>(luminance(m_values[i])) : 0;
     m_vertex.add_emitters(points.at(1, pass.first), m_values);
     if (goes_on(seen.hit.object))
       add_departures(pass, points);
-    for (std::size_t i = 0; i < pass.count; ++i)
-      sums.add(m_values[i], true, m_pdfs[i], m_techniques[i]);
+    for (std::size_t i = 0; i < pass.count; ++i) {
+      sums.add(m_values[i], true, m_pdfs[i]);
+      m_rest[i].luminance += static_cast<double>(luminance(m_values[i]));
+      m_rest[i].visible = true;
+    }
+    variance += variance_of_sums(m_rest);
+    sums.add_variance(variance, pass.count);
   }
 
 private:
@@ -56,37 +63,29 @@ private:
     return !m_light || ((m_path.depth != 1 || m_shines) && m_scene.shapes().may_occlude(object));
   }
 
-  void add_light(const PixelHit& seen, const Pass& pass, const PathPoints& points,
-                 PixelSums& sums) {
+  /// @return the variance of the light samples' sum, which is independent of all else; 0 without
+  /// these
+  SumVariance add_light(const PixelHit& seen, const Pass& pass, const PathPoints& points) {
     if (!m_light) {
       m_vertex.add_light(points.at(1, pass.first), m_values);
       ++m_cost.points;
-      return;
+      return {};
     }
     const auto each = static_cast<std::uint32_t>(m_counts.lights);
     m_light->prepare(seen, m_cost);
     m_light->sample({pass.first * each, pass.count * each});
-    m_visible.resize(m_values.size() * each);
-    for (std::size_t i = 0; i < m_visible.size(); ++i) {
+    m_contributions.resize(m_values.size() * each);
+    for (std::size_t i = 0; i < m_contributions.size(); ++i) {
       m_pdfs[i / each] += m_light->pdf(i) / static_cast<float>(each);
-      m_visible[i] = m_light->visible(i) ? 1 : 0;
-      if (m_light->technique(i) == Technique::Second)
-        m_techniques[i / each] = Technique::Second;
-      if (m_visible[i] != 0)
-        add_light_sample(i, each, sums);
+      const Rgb weight = m_light->weight(i);
+      const bool visible = m_light->visible(i);
+      m_contributions[i] = m_light->contribution(i, weight, visible);
+      if (visible)
+        m_values[i / each] += weight / static_cast<float>(each);
     }
-    const SumVariance shared = m_light->shared_variance(m_visible);
-    sums.add_shared({shared.shadowed / (each * each), 0, 0});
-  }
-
-  /// What does not depend on the seed adds no variance to its path.
-  void add_light_sample(std::size_t i, std::uint32_t each, PixelSums& sums) {
-    const Rgb value = m_light->weight(i) / static_cast<float>(each);
-    const Technique technique = m_light->technique(i);
-    if (technique == Technique::Fixed)
-      sums.shadowed += value;
-    else
-      m_values[i / each] += value;
+    SumVariance variance = m_light->variance_of_sums(m_contributions);
+    variance *= 1.0 / (each * each);
+    return variance;
   }
 
   /// All departures look for light; one of each path's goes on.
@@ -114,10 +113,10 @@ private:
   std::optional<LightSamples> m_light; ///< none: by the first vertex itself
   PathVertex m_vertex;                 ///< the first
   PathTracer m_tracer;
-  std::vector<Rgb> m_values;           ///< radiance by path
-  std::vector<float> m_pdfs;           ///< mean of its light samples'
-  std::vector<Technique> m_techniques; ///< of its light samples
-  std::vector<std::uint8_t> m_visible; ///< of all light samples
+  std::vector<Rgb> m_values;                 ///< radiance by path
+  std::vector<float> m_pdfs;                 ///< mean of its light samples'
+  std::vector<Contribution> m_contributions; ///< of all light samples
+  std::vector<Contribution> m_rest;          ///< of all else, by path
   std::vector<Departure> m_departures;
 };
 

@@ -133,7 +133,7 @@ private:
 /// A light that is a tree alone, as a probe of the tree's pixels.
 LightDistribution distribution_of_tree(const Light& light) {
   const wavelet::Map map = light.map(1 << light.tree().levels);
-  probe::Image image(map.size, map.size);
+  Image image(map.size, map.size);
   image.rgb = map.rgb;
   return LightDistribution(probe::Probe(image, probe::Mapping::Octahedral));
 }

@@ -22,7 +22,8 @@ public:
     const std::span<DirectionSample> own = out.first(out.size() - of_light);
     ProductTreeSampler::sample(points, own);
     for (DirectionSample& s : own)
-      s.pdf = (1 - share) * s.pdf + share * m_light.pdf(s.direction);
+      s = mixed(s.direction, Technique::First, (1 - share) * s.pdf,
+                share * m_light.pdf(s.direction));
     sample_light(points, share, out.last(of_light));
   }
 
@@ -54,10 +55,18 @@ private:
     m_light.sample(m_points, m_samples);
     for (std::size_t i = 0; i < out.size(); ++i) {
       const Vec3& direction = m_samples[i].direction;
-      out[i] = {direction,
-                (1 - share) * ProductTreeSampler::pdf(direction, 1) + share * m_samples[i].pdf,
-                Technique::Second};
+      out[i] = mixed(direction, Technique::Second,
+                     (1 - share) * ProductTreeSampler::pdf(direction, 1), share * m_samples[i].pdf);
     }
+  }
+
+  /// A sample of the product (First) or the light (Second), with the share of either in its
+  /// density.
+  static DirectionSample mixed(const Vec3& direction, Technique technique, float product,
+                               float light) {
+    const float pdf = product + light;
+    const float first = pdf > 0 ? product / pdf : 1.0F;
+    return {direction, pdf, technique, {first, first}};
   }
 
   const Light& m_light;

@@ -15,6 +15,11 @@ struct PowerHeuristic {
     // The square of a sharp lobe's density over a tiny one must stay finite.
     return own > 0 ? std::min(own + other * (other / own), 1e30F) : 0.0F;
   }
+
+  static float weight(float own, float other) {
+    const float balance = own / (own + other);
+    return balance * balance / (balance * balance + (1 - balance) * (1 - balance));
+  }
 };
 
 } // namespace

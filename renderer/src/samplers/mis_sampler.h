@@ -10,8 +10,9 @@ namespace haarlight::renderer {
 /// follows either. Of N samples, n_i from density p_i, one of technique i adds w_i f / (n_i p_i) to
 /// the estimate, which here is f / (N pdf) with pdf = n_i p_i / (w_i N): Heuristic computes it from
 /// the shares s_i = n_i p_i / N.
-/// @tparam Heuristic has `static float density(float own, float other)`, own and other being the
-/// shares of the technique that drew a sample and of the other one
+/// @tparam Heuristic has `static float density(float own, float other)` and `weight(own, other)`,
+/// pdf and w_i, own and other being the shares of the technique that drew a sample and of the other
+/// one
 template <class Heuristic>
 class MisSampler : public Sampler {
 public:
@@ -45,17 +46,28 @@ private:
       out[i] = {m_samples[i].direction};
     m_lobe.pdfs(out);
     for (std::size_t i = 0; i < out.size(); ++i)
-      out[i].pdf = Heuristic::density(m_part * m_samples[i].pdf, (1.0F - m_part) * out[i].pdf);
+      out[i] = counted(out[i].direction, Technique::First, m_part * m_samples[i].pdf,
+                       (1.0F - m_part) * out[i].pdf);
   }
 
   void sample_lobe(const PointSource& points, std::span<DirectionSample> out) {
     m_points.resize(out.size());
     points.fill(1, m_points);
     m_lobe.sample(m_points, out);
-    for (DirectionSample& s : out) {
-      s.pdf = Heuristic::density((1.0F - m_part) * s.pdf, m_part * m_light.pdf(s.direction));
-      s.technique = Technique::Second;
-    }
+    for (DirectionSample& s : out)
+      s = counted(s.direction, Technique::Second, m_part * m_light.pdf(s.direction),
+                  (1.0F - m_part) * s.pdf);
+  }
+
+  /// A sample of the light (First) or the lobe (Second), given the shares of both.
+  static DirectionSample counted(const Vec3& direction, Technique technique, float light,
+                                 float lobe) {
+    const float pdf = technique == Technique::First ? Heuristic::density(light, lobe)
+                                                    : Heuristic::density(lobe, light);
+    const float sum = light + lobe;
+    if (!(sum > 0))
+      return {direction, pdf, technique};
+    return {direction, pdf, technique, {light / sum, Heuristic::weight(light, lobe)}};
   }
 
   static TechniqueSplit split_of(std::size_t count) {
@@ -72,6 +84,7 @@ private:
 /// w_i = s_i / Σ s_k: every sample counts with the mean density of all (Veach and Guibas 1995).
 struct BalanceHeuristic {
   static float density(float own, float other) { return own + other; }
+  static float weight(float own, float other) { return own / (own + other); }
 };
 
 } // namespace haarlight::renderer

@@ -14,7 +14,7 @@ namespace {
 /// A light that is a tree alone, as a picture of its finest squares.
 probe::Probe picture_of(const wavelet::TreeView& tree) {
   const int size = 1 << tree.levels;
-  probe::Image image(size, size);
+  Image image(size, size);
   const auto side = static_cast<float>(size);
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)

@@ -1,5 +1,6 @@
 #include <renderer/transfer/transfer.h>
 
+#include <wavelet/base/error.h>
 #include <wavelet/base/parallel.h>
 #include <wavelet/file/input_file.h>
 
@@ -18,9 +19,14 @@ struct Made {
   wavelet::ProjectionReport report;
 };
 
-void account(const Made& made, TransferReport& sums) {
+void account(const Made& made, const std::string& scene_path, TransferReport& sums) {
   if (made.report.squares == 0)
     return;
+  if (!std::isfinite(made.report.dropped + made.report.unresolved))
+    throw_input_error(scene_path,
+                      "light and reflectances are too large for a transfer: the squares "
+                      "of their products exceed the largest single-precision number; "
+                      "the light must be scaled down");
   ++sums.pixels;
   sums.nodes += made.tree.links.size();
   sums.mean_squares += static_cast<double>(made.report.squares);
@@ -105,7 +111,7 @@ TransferReport build_transfer(const LoadedScene& scene, const Variation& variati
         batch[i] = {maker.make(points[first + i]), maker.report()};
     });
     for (Made& made : batch) {
-      account(made, report);
+      account(made, scene.description().path, report);
       sink.add(std::move(made.tree));
     }
     if (progress)

@@ -20,7 +20,7 @@ Eigen::Matrix3f turn_of(const Eigen::Vector3d& yaw_pitch_roll) {
 }
 
 TurnedLight::TurnedLight(const Light& light, int resolution)
-    : m_resolution(resolution), m_level(probe::turning_level(light.map(
+    : m_resolution(resolution), m_level(probe::make_rotatable(light.map(
                                     std::max(std::min(4 * resolution, side_max), resolution)))) {
   for (int axis = 0; axis < 3; ++axis)
     m_placed.col(axis) = light.to_world(Vec3::Unit(axis));
@@ -28,7 +28,7 @@ TurnedLight::TurnedLight(const Light& light, int resolution)
 
 wavelet::Map TurnedLight::map(const Eigen::Matrix3f& turn) const {
   const Eigen::Matrix3f back = m_placed.transpose() * turn.transpose() * m_placed;
-  return probe::turned_map(m_level, {back.col(0), back.col(1), back.col(2)}, m_resolution);
+  return probe::rotate_map(m_level, {back.col(0), back.col(1), back.col(2)}, m_resolution);
 }
 
 } // namespace haarlight::renderer

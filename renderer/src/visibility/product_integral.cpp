@@ -184,8 +184,7 @@ public:
     ++m_cost.points;
     m_cost.leaves += product.leaf_count();
     const auto leaves = m_masked.build(product, m_masks.at(seen.hit));
-    sums.add(m_reflected.integral(point, material, leaves) * wavelet::sphere_area, true, 0,
-             Technique::Fixed);
+    sums.add(m_reflected.integral(point, material, leaves) * wavelet::sphere_area, true, 0);
   }
 
 private:

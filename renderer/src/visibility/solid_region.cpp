@@ -2,6 +2,8 @@
 
 #include "shapes/shape_canonical.h"
 
+#include <wavelet/base/elementary.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "factored/nonnegative_factors.h"
 #include "brdf_test_support.h"
 #include "chi_square.h"
+#include "nonnegative_factors.h"
 
 #include <brdf/analytic.h>
 #include <brdf/factored_brdf.h>

@@ -1,6 +1,6 @@
 #include "probe_files.h"
 
-#include <probe/read_image.h>
+#include <probe/read_probe.h>
 
 #include <cstring>
 
@@ -29,12 +29,15 @@ const std::vector<float> column = {1, 2, 3, 4, 5, 6}; // bottom row first
 
 TEST_CASE("Line ends, byte orders and scales of PFM", "[pfm]") {
   const ProbeFolder folder;
-  const std::string files[] = {"PF\n1 2\n-1.0\n" + floats(column),
-                               "PF\r\n1 2\r\n-1.0\r\n" + floats(column),
-                               "PF 1 2 -1 " + floats(column),
-                               "PF\n1\n2\n1.000000\n" + floats(column, true),
-                               "PF\r\n1 2\r\n+1\r\n" + floats(column, true),
-                               "PF\n1 2\n-0.5\n" + floats({2, 4, 6, 8, 10, 12})};
+  const std::string files[] = {
+      "PF\n1 2\n-1.0\n" + floats(column),
+      "PF\r\n1 2\r\n-1.0\r\n" + floats(column),
+      "PF 1 2 -1 " + floats(column),
+      "PF\n1\n2\n1.000000\n" + floats(column, true),
+      "PF\r\n1 2\r\n+1\r\n" + floats(column, true),
+      "PF\n1 2\n-0.5\n" + floats({2, 4, 6, 8, 10, 12}),
+      "PF\n1 2\n-8.507059173023462e+37\n" +
+          floats({0x1p-126F, 0x2p-126F, 0x3p-126F, 0x4p-126F, 0x5p-126F, 0x6p-126F})};
   for (const std::string& bytes : files) {
     const auto loaded = read_image(folder.write("a.hdr", bytes));
     INFO(bytes.substr(0, 20));

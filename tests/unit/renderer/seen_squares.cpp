@@ -1,9 +1,9 @@
 // Estimates of what is seen of squares, against the rays they stand for.
 
 #include "visibility/seen_squares.h"
+#include "occluders.h"
 #include "shapes/shape_canonical.h"
 #include "visibility/ray_lanes.h"
-#include "occluders.h"
 
 #include <wavelet/square/sphere_map.h>
 

@@ -10,6 +10,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 using namespace haarlight;
 using namespace haarlight::view;
 
@@ -110,4 +113,22 @@ TEST_CASE("a copy of a file has its bytes and name, and goes with its object", "
   CHECK_FALSE(fs::exists(path));
   std::string missing = (folder.path / "missing").string();
   CHECK_THROWS_AS(FileCopies().take(missing), Error);
+}
+
+TEST_CASE("copies of files are removed when a signal ends the process", "[view]") {
+  const Folder folder;
+  std::string path = folder.write("trees.haar", "bytes");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    FileCopies copies;
+    copies.take(path);
+    const fs::path place = fs::path(path).parent_path();
+    if (!fs::exists(place))
+      ::_exit(2);
+    remove_temporaries(); // as the signal handlers do
+    ::_exit(fs::exists(place) ? 1 : 0);
+  }
+  int status = -1;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
 }

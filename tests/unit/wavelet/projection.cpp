@@ -5,9 +5,11 @@
 #include <wavelet/product/projection.h>
 #include <wavelet/transform/compress.h>
 #include <wavelet/transform/dense_coefficients.h>
+#include <wavelet/tree/pyramid.h>
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -157,6 +159,29 @@ TEST_CASE("variances within squares are those of their pixels") {
     for (int x = 0; x < map.size; ++x)
       sum += std::pow(static_cast<double>(luminance(map.at(x, y))) - mean, 2);
   CHECK(static_cast<double>(variances[0]) == Approx(sum / (map.size * map.size)).epsilon(1e-3));
+}
+
+TEST_CASE("averages and deviations scale with the function over the range of float") {
+  const Map map = rough_map(6);
+  const Tree tree = tree_of(map);
+  const std::array trees = {tree.view()};
+  const Pyramid pyramid(trees);
+  for (const float scale : {0x1p-100F, 0x1p-66F, 0x1p66F, 0x1p100F}) {
+    Map scaled = map;
+    for (float& value : scaled.rgb)
+      value *= scale;
+    const Tree scaled_tree = tree_of(scaled);
+    const std::array scaled_trees = {scaled_tree.view()};
+    const Pyramid other(scaled_trees);
+    for (const int level : {0, 2, 4}) {
+      const Float4 expected = pyramid.lookup(0, level, 0.3F, 0.2F);
+      const Float4 found = other.lookup(0, level, 0.3F, 0.2F) / scale;
+      for (int c = 0; c < 4; ++c) {
+        INFO(scale << " level " << level << " lane " << c);
+        CHECK(float{found[c]} == Approx(float{expected[c]}).epsilon(0.01));
+      }
+    }
+  }
 }
 
 TEST_CASE("dense coefficients give the inner products of trees") {

@@ -25,6 +25,12 @@ enum class Technique : std::uint8_t {
 };
 inline constexpr std::size_t random_techniques = 2; ///< First and Second
 
+/// Weights of Technique::First at a direction, those of Second being the complements to 1.
+struct FirstWeights {
+  float balance = 1;   ///< n1 p1 / (n1 p1 + n2 p2), the balance heuristic's
+  float heuristic = 1; ///< that of the heuristic by which samples count
+};
+
 /// A direction and the density it counts with. For several techniques at once this is their mean
 /// density, weighted by their numbers of samples, which makes f/pdf the balance heuristic; for
 /// resampled directions it is the reciprocal of the weight they count with.
@@ -32,6 +38,7 @@ struct DirectionSample {
   Vec3 direction; ///< unit, in the light's frame
   float pdf = 0;  ///< sr⁻¹; 0 = no direction could be drawn, it contributes nothing
   Technique technique = Technique::First;
+  FirstWeights first = {}; ///< used where a technique drew a single sample
 };
 
 /// Variances and covariance of two sums over samples, Σ w v and Σ w: w is the luminance of a
@@ -40,6 +47,19 @@ struct SumVariance {
   double shadowed = 0;
   double covariance = 0;
   double unshadowed = 0;
+
+  SumVariance& operator+=(const SumVariance& other) {
+    shadowed += other.shadowed;
+    covariance += other.covariance;
+    unshadowed += other.unshadowed;
+    return *this;
+  }
+  SumVariance& operator*=(double factor) {
+    shadowed *= factor;
+    covariance *= factor;
+    unshadowed *= factor;
+    return *this;
+  }
 };
 
 /// The point sets of a pixel's samples. Sets of different dimensions are independent of each other.

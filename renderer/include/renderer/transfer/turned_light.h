@@ -24,7 +24,7 @@ public:
 private:
   int m_resolution;
   Eigen::Matrix3f m_placed; ///< from the light's frame to the world
-  probe::WorldLevel m_level;
+  probe::RotatableMap m_level;
 };
 
 } // namespace haarlight::renderer
