@@ -119,8 +119,8 @@ Vec3 cosine_power_direction(double n, const Vec2& u) {
       .normalized();
 }
 
-/// Angles of a pair whose second is above the horizon, with the half vector turned upwards: every
-/// direction of the sphere has exactly one such half vector.
+/// Angles of a pair whose second is above the horizon, with the half vector in the upper
+/// hemisphere: every direction of the sphere has exactly one such half vector.
 Angles upward_angles(const Vec3& wi, const Vec3& wo) {
   Angles a = angles_of(wi, wo);
   a.cos_h = std::abs(a.cos_h);

@@ -26,7 +26,7 @@ struct SampleBatch {
   float middle_wo[3] = {0, 0, 1}; ///< ω_o for the middle normal of the cell
   int count = 0;
   float u[batch_capacity], v[batch_capacity]; ///< square coordinates of ω
-  float spacing[batch_capacity];              ///< width of what a sample stands for, radians
+  float spacing[batch_capacity];              ///< width of the area of a sample, radians
   float normal[3][batch_capacity];
 
   float cosine[batch_capacity];     ///< n·ω
@@ -57,8 +57,8 @@ inline float needed_resolution(float z, float wi_wo, float spacing) {
          (cosine_d2 * bins2 * (4.0F * bins2_per_radian * theta_h + 1.0F));
 }
 
-/// With c = n·z, ω_o = 2c n − z, so that H = ω + ω_o = (ω − z) + 2c n: what H has across n is what
-/// the small vector ω − z has, found without cancellation.
+/// With c = n·z, ω_o = 2c n − z, so that H = ω + ω_o = (ω − z) + 2c n: the component of H across n
+/// is that of the small vector ω − z, without cancellation.
 HAARLIGHT_CPU_CLONES void place_samples(SampleBatch& b) {
   HalfDifferenceBatch& angles = b.angles;
   for (int i = 0; i < b.count; ++i) {
@@ -323,8 +323,8 @@ const char* fold_name(Fold fold) {
   return fold == Fold::Mirrors ? "mirrors" : fold == Fold::Rotations ? "rotations" : "none";
 }
 
-/// The map of roll φ + π/2 from that of roll φ: ω turns by 90° about z, from +x to +y.
-Map quarter_turn(const Map& map) {
+/// The map of roll φ + π/2 from that of roll φ: ω rotates by 90° about z, from +x to +y.
+Map rotate_quarter(const Map& map) {
   Map turned(map.size);
   for (int y = 0; y < map.size; ++y)
     for (int x = 0; x < map.size; ++x)
@@ -396,7 +396,7 @@ Map BrdfMaps::make(int column, int row) const {
   const int quarter = rolls % 4 == 0 ? rolls / 4 : rolls;
   Map map = sample(column, row % quarter);
   for (int turn = row / quarter; turn > 0; --turn)
-    map = quarter_turn(map);
+    map = rotate_quarter(map);
   return map;
 }
 

@@ -44,7 +44,7 @@ void check_pixels(std::uint64_t width, std::uint64_t height);
 
 /// Refuses a file too short for its size, before the pixels are allocated.
 /// @param raw_bytes of the uncompressed pixels
-/// @param ratio raw bytes that a byte of the file can stand for at most
+/// @param ratio largest number of raw bytes per byte of the file
 void check_file_size(const Task& task, std::uint64_t raw_bytes, std::uint64_t ratio);
 
 /// Applies an orientation to a stored image.

@@ -32,7 +32,7 @@ namespace {
 /// The channels of one layer of one part, by their role. Names are complete, empty if missing.
 struct ExrChannels {
   int part = 0;
-  std::string layer; ///< what precedes the last dot of the names; empty if nothing does
+  std::string layer; ///< the part of the names before the last dot; empty if there is none
   std::string red, green, blue;
   std::string luminance, red_chroma, blue_chroma; ///< Y, RY, BY
 };
@@ -254,9 +254,9 @@ std::uint64_t height_of(const Box2i& box) {
   return static_cast<std::uint64_t>(std::int64_t{box.max.y} - box.min.y + 1);
 }
 
-/// Raw bytes that a byte of the file can stand for: 64 is a run of 127 equal bytes in two, 1032 the
-/// limit of deflate, PXR24 drops a byte of four before it, B44A packs 16 halves into 3 bytes. PIZ
-/// codes 256 equal values in 10 bits. DWA deflates what is one value per 8x8 block.
+/// Largest number of raw bytes per byte of the file: 64 is a run of 127 equal bytes in two, 1032
+/// the limit of deflate, PXR24 drops a byte of four before it, B44A packs 16 halves into 3 bytes.
+/// PIZ codes 256 equal values in 10 bits. DWA deflates one value per 8x8 block.
 std::uint64_t largest_ratio(Imf::Compression compression) {
   switch (compression) {
   case Imf::NO_COMPRESSION:

@@ -17,8 +17,8 @@ namespace {
 /// Pixels of one byte of Huffman-coded data at most: a block of 8x8 takes one bit or more.
 constexpr std::uint64_t huffman_ratio = 512;
 
-/// A file that is being read. libjpeg returns from an error by longjmp to `target`; what a jump
-/// passes has no destructors.
+/// A file that is being read. libjpeg returns from an error by longjmp to `target`; frames skipped
+/// by a jump have no destructors.
 class JpegFile {
 public:
   explicit JpegFile(std::span<const std::byte> bytes) : m_bytes(bytes) {

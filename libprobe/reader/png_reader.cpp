@@ -19,8 +19,8 @@ constexpr int longest_side = 1 << 17;
 /// Raw bytes that deflate can pack into one.
 constexpr std::uint64_t deflate_ratio = 1032;
 
-/// A file that is being read. libpng returns from an error by longjmp to `target`; what a jump
-/// passes has no destructors.
+/// A file that is being read. libpng returns from an error by longjmp to `target`; frames skipped
+/// by a jump have no destructors.
 class PngFile {
 public:
   explicit PngFile(std::span<const std::byte> bytes) : m_bytes(bytes) {
@@ -60,7 +60,7 @@ public:
     ::png_read_end(png, info);
   }
 
-  /// What libpng ignored; empty if nothing.
+  /// The warning of libpng; empty if none.
   const std::string& warning() const { return m_warning; }
 
   png_structp png = nullptr;

@@ -134,7 +134,7 @@ void choose_page(TIFF* tiff, const ImageChoice& choice) {
     refuse_damaged();
 }
 
-/// Raw bytes that a byte of the file can stand for: runs of 127, LZW codes of 12 bits for strings
+/// Largest number of raw bytes per byte of the file: runs of 127, LZW codes of 12 bits for strings
 /// of up to 3837 bytes, the limit of deflate; 2^20 where there is no bound worth stating.
 std::uint64_t largest_ratio(std::uint16_t compression) {
   switch (compression) {

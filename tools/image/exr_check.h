@@ -18,9 +18,9 @@ inline constexpr std::int64_t most_exr_pixels = std::int64_t{1} << 28;
 /// The header of a single-part image of scanlines or tiles, after everything in the file except the
 /// compressed pixels has been checked: attributes have the sizes of their types and occur once, the
 /// required ones are present, the table of chunks is complete, every chunk lies within the file, is
-/// the one its table entry stands for, and is long enough to hold its pixels at the highest ratio
-/// of its compression. So no reader allocates much more than a constant times the size of the file,
-/// or reads past a chunk.
+/// the one of its table entry, and is long enough to hold its pixels at the highest ratio of its
+/// compression. So no reader allocates much more than a constant times the size of the file, or
+/// reads past a chunk.
 /// @throws Error(Input) otherwise, and for deep and multi-part images
 Imf::Header read_exr_header(const InputFile& file);
 

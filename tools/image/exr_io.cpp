@@ -255,7 +255,7 @@ void check_exr_complete(const std::string& temporary_path) {
     Imf::InputFile file(temporary_path.c_str());
     if (file.isComplete())
       return;
-  } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): said below
+  } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): reported below
   }
   throw_output_error(temporary_path, "is incomplete after writing");
 }

@@ -59,7 +59,7 @@ private:
   std::uint64_t m_position = 0;
 };
 
-/// Calls `body`, turning what OpenEXR throws into Error(Input) for `path`.
+/// Calls `body`; converts exceptions of OpenEXR to Error(Input) for `path`.
 template <class F>
 auto with_input_errors(const std::string& path, F&& body) {
   try {

@@ -20,8 +20,8 @@ SignedField halved(const SignedField& field);
 Rgb false_colour(float t);
 
 /// The field in false colours of the cube root of each value divided by the largest magnitude, each
-/// value `scale` × `scale` pixels, above a legend of 22 rows: a bar of all colours, and the values
-/// that they stand for (320 pixels across have room for them).
+/// value `scale` × `scale` pixels, above a legend of 22 rows: a bar of all colours, and their
+/// values (320 pixels across have room for them).
 Image false_colour_picture(const SignedField& field, int scale);
 
 } // namespace haarlight::image

@@ -106,7 +106,7 @@ void check_grid(const Attributes& attributes, const SetInfo& info) {
                     "' is needed");
 }
 
-/// How many rolls the stored rows stand for.
+/// Number of rolls that the stored rows represent.
 int rolls_of(const SetInfo& info) {
   if (info.kind != SetKind::Brdf)
     return 1;

@@ -42,7 +42,7 @@ png_image description(int width, int height) {
   return image;
 }
 
-/// Frees what libpng holds for a picture that is being read.
+/// Frees libpng's state for an image that is being read.
 struct Cleaner {
   png_image& image;
   explicit Cleaner(png_image& owned) : image(owned) {}

@@ -51,7 +51,7 @@ struct TablePosition {
   F phi_d;   ///< in [0, 180] with the reciprocity fold, else in [0, 360]
 };
 
-/// Turns the φ_d point by half a turn where that brings it to y ≥ 0: swaps wi and wo.
+/// Rotates the φ_d point by 180° if its y is negative: swaps wi and wo.
 template <class F>
 void fold_reciprocity(HalfDifference<F>& angles) {
   const F zero = broadcast<F>(0);

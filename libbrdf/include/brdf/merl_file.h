@@ -3,11 +3,11 @@
 // model").
 //
 // Little-endian: int32[3] bins of θ_h, θ_d, φ_d; then three planes R, G, B of float64 values, index
-// φ_d + n_φ·(θ_d + 90·θ_h). A value is f_r / scale, in sr⁻¹, without cosine; it stands for the
+// φ_d + n_φ·(θ_d + 90·θ_h). A value is f_r / scale, in sr⁻¹, without cosine; it is the value at the
 // centre of its bin. Negative values mark invalid cells (a direction below the horizon). Bin k of
 // θ_h spans π/2·[(k/90)², ((k+1)/90)²]; θ_d has 90 equal bins of [0, π/2]; φ_d 180 of [0, π)
-// (reciprocity folds the rest) or 360 of [0, 2π). Very old files with linear θ_h look the same and
-// cannot be told apart.
+// (reciprocity folds the rest) or 360 of [0, 2π). Very old files with linear θ_h cannot be
+// distinguished.
 
 #include <cstddef>
 #include <numbers>

@@ -48,7 +48,7 @@ public:
   /// Probability with which sample() draws a pixel; they add up to 1.
   double probability(int x, int y) const;
 
-  /// What sample() returns once it has drawn a pixel, for pixels drawn by other means.
+  /// sample() within given pixels, for pixels drawn by other means.
   void sample_in(std::span<const PixelPoint> points, std::span<LightSample> out) const;
 
   int width() const { return m_width; }

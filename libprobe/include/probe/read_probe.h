@@ -17,12 +17,12 @@ struct LoadedImage {
   Image image;
   std::string name;               ///< base name of the file
   std::string hash;               ///< of its bytes, 16 hexadecimal digits
-  std::vector<std::string> notes; ///< what was changed on reading, a sentence each
+  std::vector<std::string> notes; ///< conversions on reading, a sentence each
 };
 
 /// Selects one of several images in a file; empty texts select the default.
 struct ImageChoice {
-  std::string layer; ///< OpenEXR: what precedes the last dot of the channel names
+  std::string layer; ///< OpenEXR: the part of the channel names before the last dot
   std::string part;  ///< OpenEXR: name or number of a part; TIFF: number of a page; from 0
 };
 
@@ -58,7 +58,7 @@ DetectedMapping detect_mapping(const Image& image, const std::string& path = {})
 struct LoadedProbe {
   Probe probe;
   std::string mapping_reason;     ///< a sentence: the mapping and the reason
-  std::vector<std::string> notes; ///< what was changed on reading
+  std::vector<std::string> notes; ///< conversions on reading
   Provenance source;              ///< source (base name), source_hash, mapping
 };
 

@@ -60,7 +60,7 @@ public:
   ReaderProcess(const ReaderProcess&) = delete;
   ReaderProcess& operator=(const ReaderProcess&) = delete;
 
-  /// Reads exactly this many bytes of what the program writes.
+  /// Reads exactly this many bytes of the program's output.
   /// @return false if it wrote fewer, or the time is over
   bool read(void* bytes, std::size_t count);
 
@@ -78,7 +78,7 @@ private:
   bool m_timed_out = false;
 };
 
-/// What a decoder makes of a file.
+/// A decoded file.
 struct DecodedImage {
   Image image;                    ///< linear Rec. 709, top row first; values are not checked yet
   std::vector<std::string> notes; ///< how the values were interpreted, a sentence each

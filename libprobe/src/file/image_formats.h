@@ -32,7 +32,7 @@ const char* format_name(ImageFormat format);
 /// The header ends with one white-space character, or with CR LF if its first line does. Reference:
 /// Debevec, "PFM Portable FloatMap Image Format", 2001.
 /// @param notes receives a sentence about each change of the values
-/// @throws Error(Input) if malformed, or if the size differs from what the header says
+/// @throws Error(Input) if malformed, or if the size of the file does not match the header
 Image read_pfm(std::span<const std::byte> bytes, const std::string& path,
                std::vector<std::string>& notes);
 

@@ -170,8 +170,8 @@ public:
   }
 
 private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw_input_error(m_path, what, m_line_offset);
+  [[noreturn]] void fail(const std::string& fault) const {
+    throw_input_error(m_path, fault, m_line_offset);
   }
 
   std::string_view read_line() {
@@ -321,8 +321,8 @@ private:
     return std::to_integer<std::uint8_t>(m_bytes[m_position + ahead]);
   }
 
-  [[noreturn]] void fail(const std::string& what, std::size_t offset) const {
-    throw_input_error(m_path, "scanline " + std::to_string(m_line) + " " + what, offset);
+  [[noreturn]] void fail(const std::string& fault, std::size_t offset) const {
+    throw_input_error(m_path, "scanline " + std::to_string(m_line) + " " + fault, offset);
   }
 
   void need(std::size_t count) const {
@@ -429,7 +429,7 @@ private:
 
 /// Refuses a picture too large, and one whose scanlines are malformed or do not hold all of its
 /// pixels. Reads the encoded bytes once and allocates nothing: a chain of old run lengths may
-/// stand for 2^32 pixels in 20 bytes, so no bound by the size of the file alone would be tight.
+/// represent 2^32 pixels in 20 bytes, so no bound by the size of the file alone is tight.
 void check_rgbe_size(std::span<const std::byte> bytes, const RgbeHeader& header,
                      const std::string& path) {
   const std::uint64_t pixels = header.lines * header.length;

@@ -143,7 +143,7 @@ void AreaRaster::add_in_row(float* steps, float x0, float x1, float height) cons
   for (int column = first; column <= last; ++column) {
     const float from = std::max(left - static_cast<float>(column), 0.0F);
     const float to = std::min(right - static_cast<float>(column), 1.0F);
-    // What has been crossed on the way to this pixel covers it whole, the part within it partly.
+    // The part of the edge left of this pixel covers it fully, the part within it partly.
     const float whole = per_pixel * std::max(static_cast<float>(column) - left, 0.0F);
     const float area = whole + per_pixel * (to - from) * (1.0F - 0.5F * (from + to));
     steps[column] += area - before;
@@ -314,15 +314,16 @@ private:
     const int left = pixel(low.x());
     const int top = pixel(low.y());
     m_raster.reset(left, top, pixel(high.x()) - left + 1, pixel(high.y()) - top + 1);
-    float turn = 0; // twice the signed area
+    float doubled = 0; // twice the signed area
     for (std::size_t i = 0; i < 8; ++i) {
       const Vec2 from = outline[i] - low;
       const Vec2 to = outline[(i + 1) % 8] - low;
-      turn += from.x() * to.y() - from.y() * to.x();
+      doubled += from.x() * to.y() - from.y() * to.x();
       m_raster.add_edge(outline[i], outline[(i + 1) % 8]);
     }
-    // Along an edge downwards the raster adds, and the polygon lies to its right if it turns so.
-    const float sign = turn > 0 ? -1.0F : 1.0F;
+    // Along an edge downwards the raster adds, and the polygon lies to its right if it is oriented
+    // so.
+    const float sign = doubled > 0 ? -1.0F : 1.0F;
     m_raster.visit([&](int x, int y, float area) {
       if (sign * area > 0)
         m_out.push_back({chart.index(x, y), sign * area});
@@ -363,7 +364,7 @@ void PixelCoverage::append(int x, int y, std::vector<CoveredPixel>& out) {
 
 // Sums.
 
-/// What a few pixels cover.
+/// The map pixels that a few source pixels cover.
 struct AreaSum::Group {
   std::vector<CoveredPixel> covered;
   std::vector<std::size_t> ends; ///< in covered, of each source pixel

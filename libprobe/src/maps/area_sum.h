@@ -32,8 +32,8 @@ float radiance_unit(const Probe& probe);
 
 /// Exact areas of a polygon in the pixels of a grid. Collects the area that a closed polygon covers
 /// of each pixel, edge by edge: every edge adds the signed area between itself and the right end of
-/// its rows. The sum over the edges is the area covered, positive where the polygon turns one way
-/// and negative where it turns the other.
+/// its rows. The sum over the edges is the area covered, positive for one orientation of the
+/// polygon and negative for the other.
 class AreaRaster {
 public:
   /// Starts with pixels [left, left + width) × [top, top + height), all empty.

@@ -150,8 +150,8 @@ int rotation_samples_along(int size) {
   return along;
 }
 
-/// Look-ups in a source, whose border holds what lies beyond the folded edges of the square. Places
-/// are counted in pixels from the centre of the border's first.
+/// Look-ups in a source, whose border holds the neighbours across the folded edges of the square.
+/// Places are counted in pixels from the centre of the border's first.
 class SourceLookup {
 public:
   explicit SourceLookup(const RotatableMap& source)
@@ -197,7 +197,7 @@ public:
       add(sample, y);
   }
 
-  /// Radiance of what is not added by area, or nothing if no sample met any of it.
+  /// Mean radiance of the pixels not added by area, or nothing if no sample met any.
   std::optional<Rgb> mean(int x) const {
     const Float4& sum = m_sums[static_cast<std::size_t>(x)].rgbw;
     if (sum[3] <= 0)
