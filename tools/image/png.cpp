@@ -52,7 +52,7 @@ struct Cleaner {
 };
 
 constexpr std::uint64_t most_pixels = std::uint64_t{1} << 28;
-constexpr std::uint64_t deflate_ratio = 1032; ///< most bytes per compressed byte (zlib)
+constexpr std::uint64_t png_deflate_ratio = 1032; ///< most bytes per compressed byte (zlib)
 
 /// Refuses pictures whose pixels the file cannot hold, before they are allocated.
 /// @param image of a file whose header libpng has read
@@ -65,7 +65,7 @@ void check_png_size(const InputFile& file, const png_image& image) {
   constexpr std::array<std::uint64_t, 7> channels = {1, 1, 3, 1, 2, 1, 4};
   const auto type = std::to_integer<std::size_t>(file.bytes()[25]);
   const std::uint64_t raw = image.height * ((width * bits * channels[type % 7] + 7) / 8);
-  if (raw / deflate_ratio > file.bytes().size())
+  if (raw / png_deflate_ratio > file.bytes().size())
     throw_input_error(file.path(), "is too short for its " + std::to_string(width) + " x " +
                                        std::to_string(image.height) + " pixels");
 }
