@@ -44,7 +44,7 @@ make --no-print-directory -C pipelines -j "$jobs" OUT="$for_make" TABLES=1 SPP=$
 
 echo "== demo picture"
 cp pipelines/scenes/demo.json "$out/scene/demo.json"
-"$bin/haarrender" "$out/scene/demo.json" -o "$out/demo.exr" --png "$out/demo.png" --spp $spp >/dev/null
+"$bin/haarrender" "$out/scene/demo.json" -o "$out/demo.exr" --image "$out/demo.png" --spp $spp >/dev/null
 
 echo "== samplers at $spp samples per pixel, and their errors"
 scene=$out/scene/paint-sun-sky.json

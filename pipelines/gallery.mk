@@ -43,7 +43,7 @@ $(scenes): $(folder)scene/%.json:
 $(gallery_pictures): sampler = product
 $(folder)room.exr: sampler = mis
 $(gallery_pictures): $(folder)%.exr: $(folder)scene/%.json $(sources) $(trees)
-	$(step) update $@ $(@:.exr=.png) $(@:.exr=.txt) -- $^ -- haarrender $< -o $@ --png $(@:.exr=.png) \
+	$(step) update $@ $(@:.exr=.png) $(@:.exr=.txt) -- $^ -- haarrender $< -o $@ --image $(@:.exr=.png) \
 	  --integrator path --sampler $(sampler) --spp "$$spp" "$${render_flags[@]}"
 
 gallery_sheet: $(gallery_pictures)

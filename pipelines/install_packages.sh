@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that are missing. Does nothing, and needs no rights, if none is.
-# Usage: install_packages.sh build|check   (check: what building needs, the linters, and clang for fuzzing)
+# Usage: install_packages.sh build|check   (check: adds the linters, clang for fuzzing, and the programs that tests use)
 set -euo pipefail
 
 packages="g++ cmake ninja-build make pkg-config zstd
   libopenexr-dev libeigen3-dev libxxhash-dev libpng-dev libjpeg-dev libtiff-dev
   libcli11-dev nlohmann-json3-dev catch2 libzstd-dev libgsl-dev libbenchmark-dev
-  libepoxy-dev libegl-dev libegl1 libgles2 libgl1-mesa-dri libglfw3-dev libimgui-dev xvfb"
+  libepoxy-dev libegl-dev libegl1 libgles2 libgl1-mesa-dri libglfw3-dev libimgui-dev"
 if [ "${1:-build}" = check ]; then
-  packages="$packages clang-format clang-tidy clang libclang-rt-14-dev shellcheck libopenimageio-dev"
+  packages="$packages clang-format clang-tidy clang libclang-rt-14-dev shellcheck
+    libopenimageio-dev xvfb chromium python3 time bsdutils binutils"
 fi
 
 missing=""

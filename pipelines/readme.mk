@@ -39,4 +39,4 @@ light.haar: gallery/scene/viewer.json
 	$(step) update $@ light.txt -- $< $(sources) $(trees) -- haarrelight build $< --vary light -o $@
 turning.png: light.haar
 	$(step) update $@ -- $< gallery/scene/viewer.json -- haarrelight sweep $< --scene gallery/scene/viewer.json \
-	  --frames 6 --on-sheet 6 -o $@; publish $@ "$$pictures/relight.png"
+	  --pictures 6 --on-sheet 6 -o $@; publish $@ "$$pictures/relight.png"

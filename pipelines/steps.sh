@@ -205,7 +205,7 @@ picture() {
   [[ $template != *@PROBE_HAAR@* ]] || inputs+=("probe/$probe.haar")
   [[ $template != *@PROBE_TABLE@* ]] || inputs+=("probe/$probe.table.haar")
   update "./$pair.exr" "./$pair.png" "./$pair.txt" -- "${inputs[@]}" -- \
-    haarrender "scene/$pair.json" -o "./$pair.exr" --png "./$pair.png" --sampler "$sampler" --spp "$spp" \
+    haarrender "scene/$pair.json" -o "./$pair.exr" --image "./$pair.png" --sampler "$sampler" --spp "$spp" \
     "${render_flags[@]}"
 }
 

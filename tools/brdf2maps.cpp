@@ -1,7 +1,7 @@
 // brdf2maps: a measured BRDF to a set of maps in the reflection frame.
 #include <support/map_output.h>
-#include <support/program.h>
-#include <support/words.h>
+#include <support/report.h>
+#include <support/tool.h>
 
 #include <brdf/brdf_maps.h>
 #include <brdf/brdf_properties.h>
@@ -28,13 +28,16 @@ void declare(tool::Tool& app, Options& o) {
   app.input(o.input, "IN.binary", "MERL file, 90 x 90 x 180 or 90 x 90 x 360 bins");
   tool::add_map_output(app, o.output);
   app.value(o.maps.size, "--size",
-            "Pixels along a map's side, a power of two; 0 = 512, or 128 with rolls", 0, 8192);
-  app.value(o.maps.theta, "--theta", "Cells of theta_r over 90 degrees", 1, 4096);
-  app.value(o.maps.roll, "--roll", "Cells of the roll phi over 360 degrees; 1 = theta_r only", 1,
-            4096);
-  app.value(o.maps.supersample, "--supersample",
-            "Least number of samples along a pixel's side; narrow lobes get more", 1, 64);
-  app.flag(o.no_cosine, "--no-cosine", "Store f_r without the factor max(0, cos)");
+            "Pixels along a side of each map, a power of two; 0 = 512, or 128 with --roll", 0,
+            8192);
+  app.value(o.maps.theta, "--theta", "Number of cells of theta_r, over 90 degrees", 1, 4096);
+  app.value(o.maps.roll, "--roll",
+            "Number of cells of the roll phi, over 360 degrees; 1 = theta_r only", 1, 4096);
+  app.value(
+      o.maps.supersample, "--supersample",
+      "Minimum number of samples along a side of a pixel; lobes narrower than a pixel get more", 1,
+      64);
+  app.flag(o.no_cosine, "--no-cosine", "Omit the factor max(0, cos): maps of f_r");
   app.choice(o.lookup, "--lookup",
              {{"trilinear", brdf::Lookup::Trilinear}, {"nearest", brdf::Lookup::Nearest}},
              "Interpolation of the file's cells");
@@ -43,8 +46,8 @@ void declare(tool::Tool& app, Options& o) {
               {"none", FoldChoice::None},
               {"rotations", FoldChoice::Rotations},
               {"mirrors", FoldChoice::Mirrors}},
-             "Rolls omitted by symmetry: auto = rotations if the number of rolls is a multiple of "
-             "4; mirrors averages the file with its bilateral mirror image");
+             "Symmetry by which rolls are omitted; auto = rotations if the number of rolls is a "
+             "multiple of 4, else none; mirrors averages the file with its mirror image");
 }
 
 brdf::BrdfMapOptions map_options(const Options& o) {
@@ -61,7 +64,7 @@ brdf::BrdfMapOptions map_options(const Options& o) {
   return maps;
 }
 
-/// The reason why a table has no valid cell.
+/// Why a table has no valid cell.
 std::string emptiness(const brdf::MeasuredBrdf& table) {
   std::string channels;
   for (std::size_t c = 0; c < 3; ++c)
@@ -71,7 +74,7 @@ std::string emptiness(const brdf::MeasuredBrdf& table) {
                           : "every cell is negative in " + channels;
 }
 
-/// Notes an albedo that no passive surface has.
+/// Notes an albedo above 1, which no passive surface has.
 void note_albedo(const tool::Tool& app, const Options& options, const brdf::BrdfMaps& maps) {
   float largest = 1;
   int column = -1;
@@ -113,8 +116,10 @@ int make_maps(const tool::Tool& app, const Options& options) {
 
 int main(int argc, char** argv) {
   return tool::run_program(
-      argc, argv, "brdf2maps",
-      "Resamples a measured BRDF into maps of f_r cos (1/sr) over the sphere, in frames "
-      "about the mirror direction, one per angle theta_r of the normal and roll phi.",
-      declare, make_maps);
+      argc, argv,
+      tool::command(
+          "brdf2maps",
+          "Resamples a measured BRDF into maps of f_r cos (1/sr) over the sphere, in frames about "
+          "the mirror direction: one map per cell of the normal's angle theta_r and roll phi.",
+          declare, make_maps));
 }

@@ -1,5 +1,5 @@
 // brdfsynth: MERL-format files of analytic reflectance models.
-#include <support/program.h>
+#include <support/tool.h>
 
 #include <brdf/brdf_properties.h>
 #include <brdf/tabulate.h>
@@ -36,13 +36,14 @@ void declare(tool::Tool& app, Options& o) {
              "Specular colour R,G,B: reflectance at normal incidence [0.04 ggx, 0.05 "
              "ashikhmin-shirley, else 0.5]",
              3, 0, 1);
-  app.value(o.roughness, "--roughness", "Width of the lobe, ggx and ward [0.2]", 1e-3, 1);
+  app.value(o.roughness, "--roughness", "Roughness of ggx and ward [0.2]", 1e-3, 1);
   app.value(o.exponent, "--exponent",
-            "Cosine exponent, blinn-phong and ashikhmin-shirley [100], lafortune [40]", 1e-3, 1e6);
-  app.value(o.lobe_xy, "--lobe-xy", "Lafortune's C_xy; positive: retro-reflecting [-1]", -10, 10);
+            "Cosine exponent of blinn-phong and ashikhmin-shirley [100] and lafortune [40]", 1e-3,
+            1e6);
+  app.value(o.lobe_xy, "--lobe-xy", "Lafortune's C_xy; positive = retroreflective [-1]", -10, 10);
   app.value(o.lobe_z, "--lobe-z", "Lafortune's C_z [1]", -10, 10);
   app.value(o.table.noise, "--noise",
-            "Standard deviation of multiplicative noise per cell, relative; as in 0.05", 0, 2);
+            "Standard deviation of multiplicative noise per cell, relative", 0, 2);
   app.value(o.table.seed, "--seed", "Random seed of the noise");
   app.offer_json();
 }
@@ -52,10 +53,10 @@ void set_colour(Rgb& colour, const std::vector<double>& given) {
     colour[c] = static_cast<float>(given[static_cast<std::size_t>(c)]);
 }
 
-/// Sets a parameter that the model has. @param parameter null if it has none of that name
+/// Sets a parameter of the model. @param parameter null if the model lacks it
 void set_number(double* parameter, const std::optional<double>& given, const char* option) {
   if (given && parameter == nullptr)
-    throw tool::UsageError(std::string(option) + " is no parameter of this model");
+    throw tool::UsageError(std::string(option) + " is not a parameter of this model");
   if (given)
     *parameter = *given;
 }
@@ -126,8 +127,10 @@ int write_table(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "brdfsynth",
-                           "Writes a MERL-format file of an analytic reflectance model: f_r in "
-                           "1/sr at bin centres, invalid cells marked as in measurements.",
-                           declare, write_table);
+  return tool::run_program(
+      argc, argv,
+      tool::command("brdfsynth",
+                    "Writes an analytic reflectance model as a MERL file: f_r in 1/sr at bin "
+                    "centres, invalid cells marked as in measurements.",
+                    declare, write_table));
 }

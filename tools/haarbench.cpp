@@ -1,15 +1,13 @@
 // haarbench: compares samplers at equal samples and at equal time.
-#include <bench/cache.h>
+#include <bench/inputs.h>
 #include <bench/measure.h>
 #include <bench/page.h>
-#include <bench/pairs.h>
 #include <bench/plan.h>
-#include <bench/scenes.h>
 #include <bench/summary.h>
 #include <html/text_file.h>
 #include <render/film_output.h>
-#include <support/program.h>
 #include <support/progress.h>
+#include <support/tool.h>
 
 #include <wavelet/base/error.h>
 
@@ -24,8 +22,8 @@ using namespace haarlight::bench;
 
 namespace {
 
-/// The output folder, its cache and their parents. Those that were made here and are still empty at
-/// the end, since the run failed early, are removed.
+/// The output folder, its cache and their parents. Folders created here that are still empty at the
+/// end, because the run failed early, are removed.
 class OutputFolders {
 public:
   OutputFolders() = default;
@@ -36,7 +34,7 @@ public:
       ::rmdir(folder->c_str()); // fails unless it is empty
   }
 
-  /// Makes the folders, and throws before the work if nothing can be written there.
+  /// Creates the folders; throws if nothing can be written there.
   void make(const tool::Tool& app, const std::string& folder) {
     std::filesystem::path parent;
     for (const std::filesystem::path& name : std::filesystem::path(folder) / "cache") {
@@ -47,7 +45,7 @@ public:
       if (std::filesystem::create_directory(parent, problem))
         m_made.push_back(parent);
       if (problem)
-        throw_output_error(folder, "cannot be made a folder: " + problem.message());
+        throw_output_error(folder, "cannot be created as a folder: " + problem.message());
     }
     for (const char* name : {"/results.json", "/results.csv", "/report.html"}) {
       app.writes("--output", folder + name);
@@ -59,7 +57,7 @@ private:
   std::vector<std::filesystem::path> m_made; ///< parents first
 };
 
-/// A scene file that is broken is told of before any long work, too.
+/// Reports a malformed scene before any long work.
 void check_scenes(const tool::Tool& app, const Plan& plan) {
   for (const std::string& word : plan.scenes) {
     renderer::SceneDescription scene = scene_of(word);
@@ -81,7 +79,7 @@ void write_rows(const Plan& plan, const std::vector<PairResult>& pairs) {
   html::write_text(plan.folder + "/results.csv", csv_text(rows));
 }
 
-/// Writes the rows of each pair as it is done: long runs that are stopped have not been in vain.
+/// Writes the rows after each pair, so that an interrupted run keeps those of finished pairs.
 std::vector<PairResult> measure_all(const tool::Tool& app, const Plan& plan,
                                     const Collection& collection) {
   const std::size_t count = collection.brdfs.size() * collection.probes.size() * plan.scenes.size();
@@ -125,8 +123,10 @@ int compare_samplers(const tool::Tool& app, Plan& plan) {
 
 int main(int argc, char** argv) {
   return tool::run_program(
-      argc, argv, "haarbench",
-      "Renders every BRDF under every probe with every sampler, at equal samples and at equal "
-      "time, and reports errors and costs; tools/HAARBENCH.md tells what the figures are.",
-      declare, compare_samplers);
+      argc, argv,
+      tool::command(
+          "haarbench",
+          "Renders every BRDF under every probe with every sampler, at equal samples and at equal "
+          "time, and reports errors and costs; tools/HAARBENCH.md defines the figures.",
+          declare, compare_samplers));
 }

@@ -1,9 +1,8 @@
-// haarinfo: what a .haar file holds.
+// haarinfo: statistics, validation and pictures of a .haar file.
 #include <html/text_file.h>
 #include <info/page.h>
-#include <support/map_choice.h>
-#include <support/program.h>
-#include <support/words.h>
+#include <support/arguments.h>
+#include <support/tool.h>
 
 #include <image/image_exr.h>
 #include <image/png.h>
@@ -29,33 +28,31 @@ struct Options {
 };
 
 void declare(tool::Tool& app, Options& options) {
-  app.input(options.path, "FILE.haar", "File to look into");
-  app.flag(options.validate, "--validate",
-           "Only check the file; exit code 1 if it breaks a rule of its format");
-  app.values(options.tree, "--tree", "Only the tree of this column and row", 2, 0, 65535);
-  app.value(
-      options.level, "--level",
-      "Level of reconstructions, 2^level pixels a side [the finest; for a picture of the whole "
-      "set the finest that stays within 2048 pixels a side]",
-      0, 13);
-  app.optional_output(
-      options.image, "--image", "OUT.png|OUT.exr",
-      "Write a picture of the tree or of the whole set; a .png is scaled to a mean of 0.18 and "
-      "tone mapped, an .exr holds the values");
+  app.input(options.path, "FILE.haar", "File to inspect");
+  app.flag(options.validate, "--validate", "Only validate the file; exit code 1 if it is invalid");
+  app.values(options.tree, "--tree", "Column and row of the only tree to inspect [all]", 2, 0,
+             65535);
+  app.value(options.level, "--level",
+            "Level of reconstruction: 2^level pixels along a side [the finest; for a picture of "
+            "all trees the finest within 2048 pixels along a side]",
+            0, 13);
+  app.optional_output(options.image, "--image", "OUT.png|OUT.exr",
+                      "Picture to write, of the tree or of all trees: .png scaled to a mean of "
+                      "0.18 and tone mapped, .exr with linear values");
   app.optional_output(
       options.page, "--html", "REPORT.html",
-      "Write a page with pictures, figures by level, the error by coefficients kept and, of "
-      "BRDF sets, lobes; it needs no other file. Pictures are at most 1024 pixels a side");
-  app.optional_input(
-      options.reference, "--against", "MAPS.exr|OTHER.haar",
-      "With --html: show the three maps that differ most from these, which the trees were "
-      "made of");
+      "Page to write, self-contained: pictures of at most 1024 pixels along a side, statistics by "
+      "level, error by number of coefficients and, for BRDF sets, lobes");
+  app.optional_input(options.reference, "--reference", "MAPS.exr|OTHER.haar",
+                     "With --html: the maps that the trees approximate; the page shows the three "
+                     "maps that differ most");
   app.choice(options.dump, "--dump", {{"csv", Dump::Csv}},
-             "Print all differences in place of the report: column,row,level,x,y,type,r,g,b");
+             "Print all coefficients instead of the report: column,row,level,x,y,type,r,g,b");
+  app.alias("--against", "--reference");
   app.offer_json();
 }
 
-/// A file that is a .haar by its first bytes can be valid or not; any other is bad input.
+/// A file that begins as a .haar is valid or invalid; any other is bad input.
 int validate(const tool::Tool& app, const std::string& path) {
   const auto form = wavelet::file_form(path);
   tool::Report report;
@@ -127,13 +124,13 @@ int inspect(const tool::Tool& app, const Options& options) {
   return tool::exit_ok;
 }
 
-int look_into(const tool::Tool& app, const Options& options) {
+int run(const tool::Tool& app, const Options& options) {
   tool::check_picture_path(options.image, "--image");
   if (!options.page.empty() && options.page != standard_output &&
       !tool::has_extension(options.page, ".html"))
-    throw tool::UsageError("--html: \"" + options.page + "\" does not end in .html");
+    throw tool::UsageError("--html: '" + options.page + "' does not end in .html");
   if (!options.reference.empty() && options.page.empty())
-    throw tool::UsageError("--against needs --html");
+    throw tool::UsageError("--reference needs --html");
   if (options.path == "-" && options.reference == "-")
     throw tool::UsageError("two inputs are standard input ('-')");
   return options.validate ? validate(app, options.path) : inspect(app, options);
@@ -142,7 +139,9 @@ int look_into(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "haarinfo",
-                           "Tells what a .haar file holds, checks it and draws it.", declare,
-                           look_into);
+  return tool::run_program(
+      argc, argv,
+      tool::command("haarinfo",
+                    "Reports statistics of a .haar file, validates it and draws its trees.",
+                    declare, run));
 }

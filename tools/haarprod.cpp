@@ -1,20 +1,83 @@
 // haarprod: multiplies stored trees.
-#include <support/program.h>
-#include <support/tree_argument.h>
-#include <support/words.h>
+#include <support/arguments.h>
+#include <support/tool.h>
 
 #include <wavelet/base/error.h>
 #include <wavelet/file/file_hash.h>
+#include <wavelet/file/input_file.h>
+#include <wavelet/file/tree_set.h>
 #include <wavelet/product/multiply.h>
 #include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 
 using namespace haarlight;
 
 namespace {
+
+/// A tree, and the set that keeps it.
+struct NamedTree {
+  std::shared_ptr<const wavelet::TreeSet> set;
+  wavelet::MapPlace place;
+
+  const wavelet::TreeView& view() const { return set->tree(place.column, place.row); }
+
+  /// As in grace.haar[0,0], without directories.
+  std::string label() const {
+    return base_name(set->path()) + "[" + std::to_string(place.column) + "," +
+           std::to_string(place.row) + "]";
+  }
+};
+
+struct TreeArgument {
+  std::string path;
+  std::vector<double> place;
+};
+
+TreeArgument parsed(const std::string& word) {
+  if (word.empty() || word.back() != ']')
+    return {word, {0, 0}};
+  const std::size_t open = word.rfind('[');
+  if (open == std::string::npos || open == 0)
+    return {word, {0, 0}};
+  return {word.substr(0, open),
+          tool::parse_numbers(word.substr(open + 1, word.size() - open - 2), 2, 0, 65535)};
+}
+
+/// Opens each file once. @throws UsageError for words of another form and for trees that a set
+/// lacks
+std::vector<NamedTree> open_trees(const std::vector<std::string>& words) {
+  std::map<std::string, std::shared_ptr<const wavelet::TreeSet>> sets;
+  std::vector<NamedTree> trees;
+  for (const std::string& text : words) {
+    const TreeArgument word = parsed(text);
+    auto& set = sets[word.path];
+    if (!set)
+      set = std::make_shared<wavelet::TreeSet>(word.path);
+    trees.push_back({set, tool::chosen_map(word.place, set->info(), text)});
+  }
+  return trees;
+}
+
+/// The first tree in the world frame while an earlier one is not, or vice versa; nullptr if none
+/// is. Generic trees, such as products, have no known frame.
+const NamedTree* out_of_frame(const std::vector<NamedTree>& trees) {
+  const NamedTree* first = nullptr;
+  for (const NamedTree& tree : trees) {
+    const wavelet::SetInfo& info = tree.set->info();
+    if (info.kind == wavelet::SetKind::Generic)
+      continue;
+    if (first == nullptr)
+      first = &tree;
+    if (first->set->info().world_frame != info.world_frame)
+      return &tree;
+  }
+  return nullptr;
+}
 
 struct Options {
   std::vector<std::string> trees;
@@ -28,34 +91,35 @@ struct Options {
 void declare(tool::Tool& app, Options& options) {
   app.inputs(options.trees, "FILE.haar",
              "Trees to multiply, all in one frame: FILE.haar[I,J] is the tree of column I and row "
-             "J, FILE.haar the first");
-  app.optional_output(options.output, "-o,--output", "OUT.haar", "Write the product as a tree");
-  app.flag(options.integral, "--integral", "Print the product's integral; the default without -o");
+             "J, FILE.haar that of 0,0");
+  app.optional_output(options.output, "-o,--output", "OUT.haar", "Tree to write: the product");
+  app.flag(options.integral, "--integral", "Print the integral of the product, as without -o");
   app.value(options.factor, "--factor",
-            "Multiply the first K trees to T1 and the rest to T2, print their inner product, which "
-            "is the integral of all, and with -o write T1 and T2, columns 0 and 1, in place of the "
-            "product",
+            "K: multiply the first K trees to T1 and the others to T2, print their inner product, "
+            "which is the integral of all, and with -o write T1 and T2 (columns 0 and 1) instead "
+            "of the product",
             1, 65535);
-  app.value(options.multiply.tolerance, "--tolerance",
-            "Drop coefficients below this share of the product's mean luminance; 0 drops none", 0,
-            1e6);
+  app.value(options.multiply.tolerance, "--threshold",
+            "Drop coefficients below this fraction of the product's mean luminance; 0 drops none",
+            0, 1e6);
   app.choice(options.multiply.coefficients, "--coefficients",
              {{"half", wavelet::CoefficientType::Half}, {"float", wavelet::CoefficientType::Float}},
-             "How coefficients are stored");
+             "Precision of stored coefficients: 16 or 32 bits");
+  app.alias("--tolerance", "--threshold");
   app.offer_json();
 }
 
-std::vector<wavelet::TreeView> views_of(const std::vector<tool::NamedTree>& trees) {
+std::vector<wavelet::TreeView> views_of(const std::vector<NamedTree>& trees) {
   std::vector<wavelet::TreeView> views;
   views.reserve(trees.size());
-  for (const tool::NamedTree& tree : trees)
+  for (const NamedTree& tree : trees)
     views.push_back(tree.view());
   return views;
 }
 
 /// Sources and options, for the header of what is written.
-wavelet::SetInfo describe(const Options& options, const std::vector<tool::NamedTree>& trees,
-                          int levels, int columns) {
+wavelet::SetInfo describe(const Options& options, const std::vector<NamedTree>& trees, int levels,
+                          int columns) {
   wavelet::SetInfo info;
   info.size = 1 << levels;
   info.columns = columns;
@@ -86,8 +150,8 @@ bool is_finite(const wavelet::TreeView& tree) {
   return true;
 }
 
-/// Refuses factors whose product or integral no float can hold.
-void require_range(bool holds, const std::vector<tool::NamedTree>& trees) {
+/// Refuses factors whose product or integral exceeds the range of float.
+void require_range(bool holds, const std::vector<NamedTree>& trees) {
   if (!holds)
     throw_input_error(trees.back().set->path(), "multiplied by the other trees, exceeds the "
                                                 "largest single-precision number");
@@ -103,7 +167,7 @@ void write(const std::string& path, const wavelet::SetInfo& info,
   file.commit([](const std::string& written) { const wavelet::TreeSet check(written); });
 }
 
-tool::Report integral_report(const Rgb& mean, const std::vector<tool::NamedTree>& trees) {
+tool::Report integral_report(const Rgb& mean, const std::vector<NamedTree>& trees) {
   tool::Report report;
   const Rgb integral = mean * wavelet::sphere_area;
   require_range(integral.isFinite().all(), trees);
@@ -127,17 +191,17 @@ wavelet::MultiplyOptions common_form(const Options& options,
 }
 
 int multiply(const tool::Tool& app, const Options& options) {
-  const std::vector<tool::NamedTree> trees = tool::open_trees(options.trees);
-  if (const tool::NamedTree* tree = tool::out_of_frame(trees))
+  const std::vector<NamedTree> trees = open_trees(options.trees);
+  if (const NamedTree* tree = out_of_frame(trees))
     app.note(tree->label() +
-             ": is in another frame than the trees before it; all should share one");
-  for (const tool::NamedTree& tree : trees)
+             ": is in another frame than the trees before it; all should share one frame");
+  for (const NamedTree& tree : trees)
     app.reads("FILE.haar", tree.set->path());
   const std::vector<wavelet::TreeView> views = views_of(trees);
   const std::size_t split = static_cast<std::size_t>(options.factor.value_or(0));
   if (options.factor && split >= views.size())
-    throw tool::UsageError("--factor: leaves nothing to T2; it must be below the " +
-                           std::to_string(views.size()) + " trees given");
+    throw tool::UsageError("--factor: T2 would be empty; it must be below the number of trees, " +
+                           std::to_string(views.size()));
   const wavelet::MultiplyOptions form = common_form(options, views);
   std::vector<wavelet::Tree> products;
   if (options.factor) {
@@ -166,7 +230,8 @@ int multiply(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "haarprod",
-                           "Multiplies trees of .haar files that share one frame.", declare,
-                           multiply);
+  return tool::run_program(argc, argv,
+                           tool::command("haarprod",
+                                         "Multiplies trees of .haar files that share one frame.",
+                                         declare, multiply));
 }

@@ -1,6 +1,7 @@
 // haarsheet: pictures side by side, compared with a reference.
-#include <support/program.h>
-#include <support/words.h>
+#include <support/arguments.h>
+#include <support/report.h>
+#include <support/tool.h>
 
 #include <image/contact_sheet.h>
 #include <image/image_exr.h>
@@ -26,21 +27,19 @@ struct Options {
 };
 
 void declare(tool::Tool& app, Options& options) {
-  app.inputs(options.paths, "PICTURES", "EXR (R, G, B, one layer of them, or Y) or PNG pictures");
+  app.inputs(options.paths, "PICTURES", "Pictures: EXR (R, G, B, one layer of these, or Y) or PNG");
   app.output(options.output, "OUT.png", "Contact sheet to write");
   app.texts(options.captions, "--caption", "TEXT",
-            "Caption of a picture, one option for each in their order [the file's name]");
-  app.optional_input(
-      options.reference, "--reference", "IN.exr",
-      "Print each picture's root mean square error relative to this one, pixel by pixel, and "
-      "add it to the captions");
-  app.value(options.sheet.columns, "--columns", "Pictures per row; 0 = as square as possible", 0,
-            1000);
-  app.value(options.sheet.scale, "--font-scale", "Pixels per pixel of the font", 1, 16);
-  app.value(options.tone.exposure, "--exposure", "Stops of exposure, for EXR pictures", -50, 50);
+            "Caption of a picture; one option per picture, in their order [the file names]");
+  app.optional_input(options.reference, "--reference", "IN.exr",
+                     "Reference picture: report each picture's root mean square relative error, "
+                     "and add it to its caption");
+  app.value(options.sheet.columns, "--columns", "Pictures per row; 0 = nearly square", 0, 1000);
+  app.value(options.sheet.scale, "--font-scale", "Magnification of the font", 1, 16);
+  app.value(options.tone.exposure, "--exposure", "Exposure of EXR pictures, stops", -50, 50);
   app.choice(options.tone.tone_map, "--tone-map",
              {{"clamp", image::ToneMap::Clamp}, {"filmic", image::ToneMap::Filmic}},
-             "Tone map, for EXR pictures");
+             "Tone mapping of EXR pictures");
   app.offer_json();
 }
 
@@ -48,12 +47,13 @@ Image read(const std::string& path) {
   return tool::has_extension(path, ".png") ? image::read_png(path) : image::read_exr(path);
 }
 
-/// Root of the mean squared relative error over all channels; where the reference is darker than a
-/// hundredth of its mean, relative to that.
+/// Root mean square of the relative error over all channels and pixels; the error is relative to at
+/// least 1 % of the reference's mean.
 double relative_error(const Image& picture, const Image& reference, const std::string& path) {
   if (picture.width != reference.width || picture.height != reference.height)
-    throw_input_error(path, "is not of the reference's size, " + std::to_string(reference.width) +
-                                " x " + std::to_string(reference.height) + " pixels");
+    throw_input_error(path, "does not have the size of the reference, " +
+                                std::to_string(reference.width) + " x " +
+                                std::to_string(reference.height) + " pixels");
   const auto count = static_cast<double>(reference.rgb.size());
   const double mean = std::accumulate(reference.rgb.begin(), reference.rgb.end(), 0.0) / count;
   double sum = 0;
@@ -71,7 +71,7 @@ std::string caption_of(const Options& options, std::size_t i) {
 
 int make_sheet(const tool::Tool& app, const Options& options) {
   if (!options.captions.empty() && options.captions.size() != options.paths.size())
-    throw tool::UsageError("as many --caption options as pictures are needed");
+    throw tool::UsageError("--caption: one option per picture is needed");
   const bool compare = !options.reference.empty();
   const Image reference = compare ? read(options.reference) : Image();
   tool::Report report;
@@ -97,7 +97,10 @@ int make_sheet(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "haarsheet",
-                           "Puts pictures side by side on one sheet and compares them.", declare,
-                           make_sheet);
+  return tool::run_program(
+      argc, argv,
+      tool::command(
+          "haarsheet",
+          "Arranges pictures side by side on a contact sheet and compares them with a reference.",
+          declare, make_sheet));
 }

@@ -1,6 +1,6 @@
 // haarview: shows stored trees, reconstructed in a fragment shader.
 #include <render/film_output.h>
-#include <support/program.h>
+#include <support/tool.h>
 
 #include <view/comparison.h>
 #include <view/egl_context.h>
@@ -127,8 +127,10 @@ int view_scene(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "haarview",
-                           "Shows trees by GL in a window, a picture or a page: a fragment shader "
-                           "reconstructs them at the level each pixel needs.",
-                           declare, view_scene);
+  return tool::run_program(
+      argc, argv,
+      tool::command("haarview",
+                    "Shows trees by GL in a window, a picture or a page: a fragment shader "
+                    "reconstructs them at the level each pixel needs.",
+                    declare, view_scene));
 }

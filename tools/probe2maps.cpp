@@ -1,6 +1,6 @@
-// probe2maps: a light probe to one map in the world frame, or to a table of rotated maps.
+// probe2maps: a light probe to one map in the world's frame, or to a table of rotated ones.
 #include <support/map_output.h>
-#include <support/program.h>
+#include <support/tool.h>
 
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
@@ -12,7 +12,7 @@ using namespace haarlight;
 
 namespace {
 
-/// Empty for `auto`.
+/// Nothing stands for `auto`.
 using MappingChoice = std::optional<probe::Mapping>;
 
 struct Options {
@@ -28,26 +28,27 @@ void declare(tool::Tool& app, Options& o) {
             "Light probe: Radiance RGBE, OpenEXR, PFM, TIFF, PNG or JPEG, recognised by content");
   tool::add_map_output(app, o.output);
   app.value(o.maps.size, "--size",
-            "Pixels along a map's side, a power of two, at least 4; 0 = 512 to 2048 by the size of "
-            "the probe, or 128 with orientations",
+            "Pixels along a side of each map, a power of two from 4; 0 = from 512 to 2048 as the "
+            "probe's resolution requires, or 128 with --orientations",
             0, 8192);
   app.value(o.maps.orientations, "--orientations",
-            "M: 1 = one map in the world's frame, else M x M mirror directions", 1, 1024);
+            "M: 1 = one map in the world frame, else maps for M x M mirror directions", 1, 1024);
   app.value(o.maps.supersample, "--supersample",
-            "Least number of samples along a pixel's side; small pixels of the probe get more", 1,
-            64);
+            "Minimum number of samples along a side of a pixel; small pixels of the probe get more",
+            1, 64);
   app.choice(o.mapping, "--mapping",
              {{"auto", MappingChoice()},
               {"angular", probe::Mapping::Angular},
               {"latlong", probe::Mapping::LatLong},
               {"mirrorball", probe::Mapping::MirrorBall},
               {"octahedral", probe::Mapping::Octahedral}},
-             "Mapping of the probe; auto decides by aspect ratio and content");
+             "Mapping of directions to pixels; auto = by aspect ratio and content");
   app.text(o.image.layer, "--layer", "NAME",
-           "Layer of an OpenEXR file: the channels NAME.R, NAME.G, NAME.B or NAME.Y. Default: R, "
-           "G, B without a layer, else the only layer with these, else Y");
-  app.text(o.image.part, "--part", "N|NAME",
-           "Part of an OpenEXR file by name or number, page of a TIFF file by number; from 0");
+           "Layer of an OpenEXR file: the channels NAME.R, NAME.G, NAME.B or NAME.Y [R, G, B "
+           "without a layer, else the only layer with these, else Y]");
+  app.text(
+      o.image.part, "--part", "N|NAME",
+      "Part of an OpenEXR file by name or number from 0; page of a TIFF file by number from 0");
 }
 
 void check(const probe::MapOptions& maps) {
@@ -59,7 +60,7 @@ void check(const probe::MapOptions& maps) {
 /// For errors of memory.
 std::string maps_text(int size) {
   const std::string side = std::to_string(size);
-  return size == 0 ? "maps of the default size" : "a map of " + side + " x " + side + " pixels";
+  return size == 0 ? "maps of the probe" : "a map of " + side + " x " + side + " pixels";
 }
 
 /// 0 = unknown.
@@ -88,8 +89,9 @@ int make_maps(const tool::Tool& app, const Options& options) {
 
 int main(int argc, char** argv) {
   return tool::run_program(
-      argc, argv, "probe2maps",
-      "Resamples a light probe into square maps of radiance (the probe's unit) over the "
-      "sphere by the equal-area octahedral mapping.",
-      declare, make_maps);
+      argc, argv,
+      tool::command("probe2maps",
+                    "Resamples a light probe into square maps of radiance (in the unit of the "
+                    "probe) over the sphere by the equal-area octahedral mapping.",
+                    declare, make_maps));
 }

@@ -1,6 +1,6 @@
-// probesynth: synthetic light probes as angular RGBE images.
-#include <support/program.h>
-#include <support/words.h>
+// probesynth: synthetic light probes as angular RGBE pictures.
+#include <support/report.h>
+#include <support/tool.h>
 
 #include <probe/probe.h>
 #include <probe/rgbe.h>
@@ -27,15 +27,17 @@ const std::vector<std::pair<std::string, probe::SceneKind>> scene_names = {
 
 void declare(tool::Tool& app, Options& o) {
   app.choice(o.kind, "--scene", scene_names,
-             "Softboxes, sun and sky over ground, or small bright spheres on a dark background");
+             "Synthetic environment: studio = softboxes, sun-sky = sun and sky over ground, "
+             "spheres = small bright lights in the dark");
   app.require("--scene");
-  app.output(o.output, "OUT.hdr", "Radiance RGBE picture to write, an angular map");
-  app.value(o.size, "--size", "Pixels along a side", 8, 8192);
+  app.output(o.output, "OUT.hdr", "Light probe to write: Radiance RGBE, angular map");
+  app.value(o.size, "--size", "Pixels along a side of the picture", 8, 8192);
   app.value(o.scene.seed, "--seed", "Random seed of studio and spheres");
-  app.value(o.scene.turbidity, "--turbidity", "Haze of the sky, 2 = clear", 2, 10);
-  app.value(o.scene.sun_elevation, "--sun-elevation", "Degrees above the horizon", 0, 90);
-  app.value(o.scene.sun_azimuth, "--sun-azimuth", "Degrees from forward (-z) to the right (+x)",
-            -360, 360);
+  app.value(o.scene.turbidity, "--turbidity", "Turbidity of the sky; 2 = clear", 2, 10);
+  app.value(o.scene.sun_elevation, "--sun-elevation",
+            "Elevation of the sun, degrees above the horizon", 0, 90);
+  app.value(o.scene.sun_azimuth, "--sun-azimuth",
+            "Azimuth of the sun, degrees from forward (-z) to the right (+x)", -360, 360);
   app.offer_json();
 }
 
@@ -46,7 +48,7 @@ std::string name_of(probe::SceneKind kind) {
   return {};
 }
 
-/// The options of the image, as header lines.
+/// The options that determine the picture, as header lines.
 std::vector<std::string> comments(const Options& o) {
   std::vector<std::string> lines = {version_text() + " probesynth, angular map",
                                     "scene=" + name_of(o.kind)};
@@ -85,8 +87,9 @@ int draw(const tool::Tool& app, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return tool::run_program(argc, argv, "probesynth",
-                           "Draws a light probe: radiance by direction, as an angular map "
-                           "(right +x, up +y, forward -z at the centre).",
-                           declare, draw);
+  return tool::run_program(argc, argv,
+                           tool::command("probesynth",
+                                         "Synthesises a light probe: radiance by direction, as an "
+                                         "angular map (right +x, up +y, forward -z at the centre).",
+                                         declare, draw));
 }

@@ -100,6 +100,6 @@ if [ -x "$bin/haarview" ] && "$bin/haarview" emitter.json --frame view.png -q >/
   done
   runs haarview emitter.json --environment --frame view.exr
 else
-  echo "SKIPPED: haarview was not built or cannot draw"
+  skip "haarview was not built or cannot draw"
 fi
 finish

@@ -2,8 +2,12 @@
 # What all programs have in common: no arguments, --help, --version, wrong options, a closed stdout.
 source "$(dirname "$0")/lib.sh" "$1"
 
-tools="brdfsynth probesynth brdf2maps probe2maps maps2haar haarinfo haardiff haarrender haarrelight haarsheet haarbench"
-[ ! -x "$bin/haarview" ] || tools="$tools haarview"
+# default_once COMMAND…: its --help prints no option's default, which is in brackets, twice.
+default_once() {
+  tr -s ' \n' ' ' <"$log/out" | grep -q '\] \[' && fail "$* --help prints a default twice"
+  return 0
+}
+
 for tool in $tools; do
   expect 2 "$tool"
   says "--help"
@@ -20,8 +24,14 @@ for tool in $tools; do
   # Every option has a description: on its own line after two blanks, or on the next one.
   awk '/^ +-/ && NF < 2 { getline next_line; if (next_line !~ /^ {10}/) exit 1 }' "$log/out" ||
     fail "$tool has an option without a description"
+  default_once "$tool"
   "$bin/$tool" --help >/dev/full 2>"$log/err"
   [ $? -eq 4 ] || fail "$tool --help >/dev/full does not give 4"
+done
+for command in build apply sweep; do
+  expect 0 haarrelight $command --help
+  prints "haarrelight $command"
+  default_once haarrelight $command
 done
 # shellcheck disable=SC2119 # the folder is empty
 leaves

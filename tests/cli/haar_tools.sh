@@ -26,7 +26,7 @@ rm variance.haar l2.haar linf.haar count.haar two.haar
 expect 0 haarinfo exact.haar
 prints "negative mass share"
 expect 0 haarinfo exact.haar --json
-command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
+valid_json
 expect 0 haarinfo grey.haar
 prints "luminance"
 expect 0 haarinfo one.haar --validate

@@ -89,7 +89,7 @@ wrong --estimator bidirectional --samplers mis
 wrong --brdf other/a.binary
 wrong --scene sphere sphere
 
-# one broken file among many: told of before any work
+# one malformed file among many: reported before any work
 rest=(--samplers mis --spp 4 "${small[@]}" -o x)
 refuses_bad_input x haarbench --brdf a.binary @ --probe p.hdr "${rest[@]}"
 refuses_bad_input x haarbench --brdf a.binary --probe p.hdr @ "${rest[@]}"

@@ -11,13 +11,7 @@ source "$(dirname "$0")/lib.sh" "$1"
 expect 0 maps2haar set.exr -o table.haar --criterion l2 --tolerance 0.1
 expect 0 maps2haar set.exr -o packed.haar --criterion l2 --tolerance 0.1 --pack
 expect 0 maps2haar set.exr -o grey.haar --luminance
-cat >scene.json <<'END'
-{ "film": {"width": 12, "height": 8},
-  "camera": {"type": "perspective", "from": [0, 0.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 30},
-  "light": {"probe": "studio.hdr", "haar": "world.haar"},
-  "materials": {"floor": {"lambert": [0.5, 0.5, 0.5]}},
-  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "floor"}] }
-END
+grey_scene scene.json 12 8 '"probe": "studio.hdr", "haar": "world.haar"'
 expect 0 haarrelight build scene.json --vary light --tolerance 0.05 --resolution 32 -o transfer.haar
 
 cat >"$log/check.py" <<'END'
@@ -54,7 +48,6 @@ assert {"html", "title", "svg", "img", "table"} <= page.seen, page.seen
 numbers = re.sub(r"base64,[A-Za-z0-9+/=]*", "", text)
 assert not re.search(r"(?<![a-z])(nan|inf)(?![a-z])", numbers)
 END
-command -v python3 >/dev/null || echo "SKIPPED: no python3, pages are not parsed"
 
 # page FILE ARGUMENTS…: a page that is whole, to $log/page.html
 page() {
@@ -62,7 +55,7 @@ page() {
   shift
   expect 0 haarinfo "$file" --html page.html "$@"
   [ ! -e page.html ] || mv page.html "$log/page.html"
-  if command -v python3 >/dev/null; then check "$file: well-formed" python3 "$log/check.py" "$log/page.html"; fi
+  if has python3; then check "$file: well-formed" python3 "$log/check.py" "$log/page.html"; fi
   grep -qE 'https?://|url\(' "$log/page.html" && fail "$file: the page is not self-contained"
   return 0
 }
@@ -90,21 +83,20 @@ lacks "θ_r = 5.6°"
 
 # the worst map is the one that haardiff finds; a packed file is compared all the same
 expect 0 haardiff set.exr table.haar --json
-column=$(sed -n '/worst_map/,$p' "$log/out" | sed -n 's/^ *"column": \([0-9]*\),$/\1/p' | head -n 1)
-row=$(sed -n '/worst_map/,$p' "$log/out" | sed -n 's/^ *"row": \([0-9]*\),$/\1/p' | head -n 1)
+worst_map
 for file in table packed; do
-  page $file.haar --against set.exr
+  page $file.haar --reference set.exr
   holds "Worst maps"
   grep -m 1 -o '<figcaption>original [0-9,]*' "$log/page.html" | grep -qx "<figcaption>original $column,$row" ||
     fail "$file: the first of the worst maps is not $column,$row"
 done
-page table.haar --against packed.haar --tree 2,1
+page table.haar --reference packed.haar --tree 2,1
 holds "original 2,1"
 
 # the same bytes for any threads and from anywhere
-page table.haar --against set.exr --threads 1
+page table.haar --reference set.exr --threads 1
 cp "$log/page.html" "$log/one.html"
-page ../work/table.haar --against ../work/set.exr --threads 2
+page ../work/table.haar --reference ../work/set.exr --threads 2
 same "$log/one.html" "$log/page.html"
 
 # hostile names and provenance stay text
@@ -112,7 +104,7 @@ name="<script>alert(1)</script>&\"'.haar"
 cp table.haar "${name//\//}" 2>/dev/null
 cp set.exr "<img src=x onerror=y>.exr"
 expect 0 maps2haar "<img src=x onerror=y>.exr" -o hostile.haar
-page hostile.haar --against "<img src=x onerror=y>.exr"
+page hostile.haar --reference "<img src=x onerror=y>.exr"
 holds "&lt;img src=x onerror=y&gt;.exr"
 lacks "<img src=x"
 page "${name//\//}"
@@ -122,17 +114,17 @@ rm "${name//\//}" hostile.haar "<img src=x onerror=y>.exr"
 
 # misuse, broken files and outputs that cannot be written
 expect 2 haarinfo table.haar --html x.png
-expect 2 haarinfo table.haar --against set.exr
-expect 3 haarinfo table.haar --html x.html --against studio.hdr
-expect 3 haarinfo table.haar --html x.html --against brdf.haar
-expect 3 haarinfo table.haar --html x.html --against missing.exr
+expect 2 haarinfo table.haar --reference set.exr
+expect 3 haarinfo table.haar --html x.html --reference studio.hdr
+expect 3 haarinfo table.haar --html x.html --reference brdf.haar
+expect 3 haarinfo table.haar --html x.html --reference missing.exr
 size=$(stat -c %s table.haar)
 for offset in 9 30 120 $((size / 2)); do
   cp table.haar bad.haar
   patch bad.haar "$offset" '\245'
   expect 3 haarinfo bad.haar --html x.html
   says bad.haar
-  expect 3 haarinfo table.haar --html x.html --against bad.haar
+  expect 3 haarinfo table.haar --html x.html --reference bad.haar
 done
 rm bad.haar
 refuses_bad_input x.html haarinfo @ --html x.html

@@ -11,12 +11,10 @@ done
 
 # field NAME INDEX: an entry of a list in the last command's JSON.
 field() { tr -d ' \n' <"$log/out" | sed "s/.*\"$1\":\[\([^]]*\)\].*/\1/" | cut -d, -f"$2"; }
-# number EXPRESSION: it must hold.
-number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
 
 # one tree: its own mean; a product's integral, its tree's mean and the inner product are one
 expect 0 haarprod studio.haar --json
-command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
+valid_json
 expect 0 haarprod studio.haar sky.haar 'table.haar[1,0]' --json
 mean=$(field mean 2)
 integral=$(field integral 2)
@@ -34,7 +32,7 @@ expect 0 haarinfo --validate factors.haar
 expect 0 haarprod 'factors.haar[0,0]' 'factors.haar[1,0]' --integral --json
 number "$(field mean 2) > 0.99 * $mean && $(field mean 2) < 1.01 * $mean"
 
-# frames that do not belong together are told of
+# a note says that frames differ
 expect 0 haarprod studio.haar sky.haar
 [ ! -s "$log/err" ] || fail "stderr: $(cat "$log/err")"
 expect 0 haarprod studio.haar 'table.haar[1,0]'
@@ -42,7 +40,7 @@ says "another frame"
 
 # dropping makes it smaller
 expect 0 haarprod studio.haar sky.haar -o all.haar
-expect 0 haarprod studio.haar sky.haar -o some.haar --tolerance 0.05
+expect 0 haarprod studio.haar sky.haar -o some.haar --threshold 0.05
 [ "$(wc -c <some.haar)" -lt "$(wc -c <all.haar)" ] || fail "nothing was dropped"
 
 # what goes wrong

@@ -2,14 +2,10 @@
 # haarrelight: transfer that is built, applied and swept, for every kind of variation, and its misuse.
 source "$(dirname "$0")/lib.sh" "$1"
 
-"$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.05 -q -o brdf.binary >/dev/null
-"$bin/brdf2maps" brdf.binary -q --size 64 --theta 16 --conservation-tolerance 1 -o brdf.haar >/dev/null
-"$bin/brdfsynth" --model ggx --diffuse 0.02,0.1,0.3 --roughness 0.4 -q -o blue.binary >/dev/null
-"$bin/brdf2maps" blue.binary -q --size 64 --theta 16 --conservation-tolerance 1 -o blue.haar >/dev/null
-for light in studio sun-sky; do
-  "$bin/probesynth" --scene $light --size 64 -q -o $light.hdr >/dev/null
-  "$bin/probe2maps" $light.hdr -q --size 64 -o $light.haar >/dev/null
-done
+make_brdf brdf --diffuse 0.2,0.1,0.05
+make_brdf blue --diffuse 0.02,0.1,0.3 --roughness 0.4
+make_probe studio
+make_probe sun-sky
 inputs=(brdf.binary brdf.haar blue.binary blue.haar studio.hdr studio.haar sun-sky.hdr sun-sky.haar scene.json)
 
 # scene FILE ROTATE MATERIAL X: a measured sphere and a matt ball at X over a matt floor.
@@ -37,19 +33,19 @@ agrees() {
 
 # light: as it stands, turned, and another
 expect 0 haarrelight build scene.json --vary light --tolerance 0.05 --resolution 64 -o light.haar --json
-command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
+valid_json
 expect 0 haarinfo light.haar
 prints "scene.json"
 expect 0 haarinfo --validate light.haar
 expect 0 haarrelight apply light.haar -o a.exr --json
 agrees scene.json a.exr 0.03
-expect 0 haarrelight apply light.haar --rotate 60,0,0 -o b.exr --png b.png
+expect 0 haarrelight apply light.haar --rotate 60,0,0 -o b.exr --image b.png
 scene turned.json 60 brdf 0.8
 agrees turned.json b.exr 0.03
 cmp -s a.exr b.exr && fail "--rotate changes nothing"
 sed 's/studio/sun-sky/g' scene.json >sky.json
 for light in sun-sky.hdr sun-sky.haar; do
-  expect 0 haarrelight apply light.haar --light $light -o b.exr
+  expect 0 haarrelight apply light.haar --probe $light -o b.exr
   agrees sky.json b.exr 0.05
 done
 rm turned.json sky.json b.exr b.png
@@ -88,12 +84,12 @@ expect 0 haarrelight apply view.haar --move 2,0,0 -o b.exr
 rm number.haar moved.json blue.json b.exr
 
 # sequences
-expect 0 haarrelight sweep light.haar --frames 3 -o turn.png --json
+expect 0 haarrelight sweep light.haar --pictures 3 -o turn.png --json
 for picture in turn.png turn-0000.png turn-0001.png turn-0002.png; do
   check "$picture is a picture" "$bin/haarsheet" $picture -o sheet.png
   rm $picture sheet.png
 done
-expect 0 haarrelight sweep object.haar --frames 2 --on-sheet 1 --move-from -2,0,0 --move-to 2,0,0 -o move.png
+expect 0 haarrelight sweep object.haar --pictures 2 --on-sheet 1 --move-from -2,0,0 --move-to 2,0,0 -o move.png
 cmp -s move-0000.png move-0001.png && fail "nothing moves"
 rm move*.png
 
@@ -111,11 +107,11 @@ expect 2 haarrelight build scene.json -o x.haar --vary material:gold
 says "measured, floor"
 expect 2 haarrelight build scene.json -o x.haar --resolution 100
 expect 2 haarrelight apply light.haar -o x.exr --move 1,0,0
-says "--vary object:NAME or view"
+says "was built with --vary light, not object:NAME or view"
 expect 2 haarrelight apply light.haar -o x.exr --brdf blue.haar
 expect 2 haarrelight apply object.haar -o x.exr --rotate 10,0,0
-says "--vary light"
-expect 2 haarrelight apply view.haar -o x.exr --light sun-sky.hdr
+says "was built with --vary object:1, not light"
+expect 2 haarrelight apply view.haar -o x.exr --probe sun-sky.hdr
 expect 2 haarrelight apply light.haar -o x.exr --rotate 10
 expect 2 haarrelight sweep light.haar -o x.exr
 for command in build apply sweep; do

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
-# haarrender: every sampler and estimator, and every kind of bad input.
+# haarrender: every sampler that --help lists, every estimator and integrator, and every kind of bad input.
 source "$(dirname "$0")/lib.sh" "$1"
 
-"$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.05 -q -o brdf.binary >/dev/null
-"$bin/brdf2maps" brdf.binary -q --size 64 --theta 16 --conservation-tolerance 1 -o brdf.haar >/dev/null
+make_brdf brdf --diffuse 0.2,0.1,0.05
 "$bin/brdf2maps" brdf.binary -q --size 32 --theta 8 --roll 16 --conservation-tolerance 1 -o brdf.table.haar >/dev/null
 "$bin/probesynth" --scene studio --size 64 -q -o probe.hdr >/dev/null
 "$bin/probe2maps" probe.hdr -q --size 64 -o probe.haar >/dev/null
@@ -28,13 +27,15 @@ cat >sphere.json <<'END'
   "materials": {"measured": {"brdf": "brdf.binary", "haar": "brdf.haar", "table": "brdf.table.haar"}},
   "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "measured"}] }
 END
-for sampler in product product-table light brdf mis factored alias median-cut kollig-keller structured \
-  ostromoukhov mis-power bis-reject bis-sir ris two-stage wais pps; do
+expect 0 haarrender --help
+samplers=$(samplers_of "$log/out")
+[ "$(wc -w <<<"$samplers")" -ge 19 ] || fail "haarrender --help lists few samplers: $samplers"
+for sampler in $samplers; do
   scene=scene.json
   case $sampler in product-table | wais) scene=sphere.json ;; esac
-  expect 0 haarrender $scene -o $sampler.exr --sampler $sampler --spp 4
-  check "$sampler.exr is a picture" "$bin/haarsheet" $sampler.exr -o sheet.png
-  rm $sampler.exr sheet.png
+  expect 0 haarrender $scene -o "$sampler.exr" --sampler "$sampler" --spp 4
+  check "$sampler.exr is a picture" "$bin/haarsheet" "$sampler.exr" -o sheet.png
+  rm "$sampler.exr" sheet.png
 done
 expect 0 haarrender scene.json -o a.exr --spp 4 --threads 1
 expect 0 haarrender scene.json -o b.exr --spp 4 --threads 2 --json
@@ -49,7 +50,7 @@ for estimator in bidirectional ratio; do
   expect 0 haarrender scene.json -o b.exr --spp 2 --estimator $estimator
 done
 expect 0 haarrender scene.json -o b.exr --spp 2 --points random --brdf-lookup nearest --probe-lookup bilinear
-expect 0 haarrender scene.json -o b.exr --png b.png --size 8x6 --spp 1 --time-limit 0.1
+expect 0 haarrender scene.json -o b.exr --image b.png --size 8x6 --spp 1 --time-limit 0.1
 check "b.png is a picture" "$bin/haarsheet" b.png -o sheet.png
 rm a.exr b.exr b.png sheet.png sphere.json
 
@@ -110,6 +111,6 @@ rm wrong.json cut.haar packed.haar
 
 # outputs that cannot be written
 refuses_bad_output .exr haarrender scene.json -o @ --spp 1
-expect 4 haarrender scene.json -o x.exr --spp 1 --png missing/x.png
+expect 4 haarrender scene.json -o x.exr --spp 1 --image missing/x.png
 leaves scene.json "${inputs[@]}"
 finish

@@ -27,7 +27,7 @@ needs_egl brdf.haar --size 8x8
 # agrees FRAMES…: at full level within 1 % of the CPU, at level 0 far from it, at finer ones nearer
 agrees() {
   expect 0 haarview "$@" --level 13 --compare --repeat 1 --json --frame frame.exr
-  command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
+  valid_json
   mapfile -t error < <(errors)
   number "${error[0]} <= 0.01 && ${error[-1]} <= 0.01"
   number "${error[1]} > 0.2 && ${error[5]} < ${error[1]} && ${error[7]} < ${error[5]}"
@@ -62,7 +62,7 @@ mapfile -t error < <(errors)
 number "${error[0]} <= 0.02"
 expect 0 haarview brdf.haar --size 32x32 --probe sky.hdr --repeat 1 --frame trees.exr
 
-# the page: by what chromium draws of it, it agrees with the CPU as well
+# the page: the picture that chromium draws of it agrees with the CPU
 export=(--compare --repeat 1 --json -q)
 expect 0 haarview brdf.haar --size 64x64 --light-direction 1,2,3 "${export[@]}" --export lamp.html
 expect 0 haarview scene.json --size 48x32 --environment --reference integral.exr --export environment.html
@@ -76,15 +76,13 @@ deviation() {
   grep -q 'gl_error 0<' "$log/dom" || fail "$1: $(grep -o '<pre id="result">.*' "$log/dom")"
   sed -n 's/.*id="result">check.* relative_rms \([0-9.e-]*\).*/\1/p' "$log/dom"
 }
-if command -v chromium >/dev/null; then
+if has chromium; then
   fine=$(deviation 'lamp.html#check,13')
   coarse=$(deviation 'lamp.html#check,4')
   number "${fine:-1} > 0 && ${fine:-1} <= 0.01 && ${coarse:-0} > 0.1"
   fine=$(deviation 'environment.html#check')
   coarse=$(deviation 'environment.html#check,2')
   number "${fine:-1} > 0 && ${fine:-1} <= 0.02 && ${coarse:-0} > 0.1"
-else
-  echo "skipped: pages are not looked at, since there is no chromium, which install_packages.sh leaves out for its size"
 fi
 
 # what is far away takes fewer accesses

@@ -27,7 +27,7 @@ needs_egl light.haar
 agrees() {
   "$bin/haarrelight" apply light.haar "$@" -q -o applied.exr >/dev/null
   expect 0 haarview light.haar "$@" --reference applied.exr --repeat 1 --json --frame frame.exr
-  command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
+  valid_json
   mapfile -t error < <(errors)
   [ "${#error[@]}" = 8 ] || fail "not seven levels: $(cat "$log/out")"
   number "${error[0]} <= 0.01 && ${error[0]} == ${error[7]}"
@@ -73,7 +73,7 @@ rm -r elsewhere bare.json frame.png
 expect 3 haarview object.haar --frame picture.exr
 says "lets object:1 vary; this takes one built with --vary light"
 expect 2 haarview object.haar --frame picture.exr --rotate 10,0,0
-says "--vary light"
+says "was built with --vary object:1, not light"
 for option in "--size 8x8" "--environment" "--probe studio.hdr" "--light-direction 0,0,1" "--export page.html"; do
   # shellcheck disable=SC2086
   expect 2 haarview light.haar --frame picture.exr $option
@@ -102,18 +102,12 @@ expect 2 haarview light.haar --watch
 expect 4 haarview light.haar --frames 1
 says "haarview: window: "
 files="applied.exr brdf.binary brdf.haar frame.exr light.haar object.haar scene.json studio.hdr sun-sky.haar sun-sky.hdr turned.exr"
-if command -v Xvfb >/dev/null && ! grep -q "left out of this build" "$log/err"; then
-  mkfifo "$log/display"
-  Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3<>"$log/display" >/dev/null 2>&1 &
-  screen=$!
-  trap 'kill "$screen" 2>/dev/null; rm -rf "$log"' EXIT
-  read -r -t 30 display <"$log/display" || fail "Xvfb does not start"
-  export DISPLAY=:$display
+if has_window && start_screen; then
   expect 0 haarview light.haar --no-panel --frames 1 --screenshot still.png
   expect 0 haarview light.haar --no-panel --frames 2 --turn 70 --screenshot turned.png
   expect 0 haarview light.haar --no-panel --frames 1 --rotate 70,0,0 --screenshot rotated.png
   expect 0 haarview light.haar --frames 1 --screenshot panel.png --json
-  command -v python3 >/dev/null && check "valid JSON" python3 -m json.tool "$log/out"
+  valid_json
   same turned.png rotated.png
   cmp -s turned.png still.png && fail "--turn changes nothing"
   cmp -s panel.png still.png && fail "there is no panel"

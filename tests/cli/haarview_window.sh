@@ -14,10 +14,7 @@ inputs="brdf.binary brdf.haar other.binary other.haar studio.hdr"
 # what goes wrong without a screen
 unset DISPLAY WAYLAND_DISPLAY
 expect 4 haarview brdf.haar
-if grep -q "left out of this build" "$log/err"; then
-  echo "skipped: haarview was built without a window"
-  exit 77
-fi
+has_window || finish
 says "haarview: window: cannot be opened"
 for wrong in "--turn 30" "--frames 0" "--frames 2 --screenshot picture.jpg" "--screenshot picture.png" \
   "--frames 2 --reloads 1" "--frame picture.png --watch" "--compare"; do
@@ -29,13 +26,7 @@ expect 2 haarview brdf.haar --environment
 # shellcheck disable=SC2086
 leaves $inputs
 
-command -v Xvfb >/dev/null || { echo "skipped: Xvfb is not installed"; finish; exit 77; }
-mkfifo "$log/display"
-Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3<>"$log/display" >/dev/null 2>&1 &
-screen=$!
-trap 'kill "$screen" 2>/dev/null; rm -rf "$log"' EXIT
-read -r -t 30 number <"$log/display" || { echo "skipped: Xvfb does not start"; exit 77; }
-export DISPLAY=:$number
+start_screen || finish
 
 # pixels A.png B.png: sets $brightness, the mean code of A, and $difference, the mean of |A - B|; codes up to 255
 pixels() {
@@ -72,7 +63,6 @@ print(sum(a) / len(a), sum(abs(x - y) for x, y in zip(a, b)) / len(a) if len(a) 
 END
 )
 }
-number() { awk "BEGIN { exit !($1) }" || fail "not so: $1"; }
 
 # saved NAME ARGUMENTS…: a picture of the window without its controls
 saved() {
@@ -93,8 +83,8 @@ saved around brdf.haar --frames 1 --probe studio.hdr --light-level 5
 expect 0 haarview brdf.haar --size 120x90 --frame frame.png
 expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --frame frame_around.png
 expect 0 haarview brdf.haar --size 400x300 --frames 2 --screenshot panel.png --json
-if command -v python3 >/dev/null; then
-  check "valid JSON" python3 -m json.tool "$log/out"
+if has python3; then
+  valid_json
   for kind in "still frame" "around frame_around"; do
     # shellcheck disable=SC2086
     pixels ${kind/ /.png }.png
@@ -106,8 +96,6 @@ if command -v python3 >/dev/null; then
     pixels $another.png still.png
     number "$brightness > 10 && $difference > 1"
   done
-else
-  echo "skipped: pictures are not compared, as python3 is not installed"
 fi
 
 # watched WAY NAME: a file is rewritten in that way again and again until the window has tried to read it once

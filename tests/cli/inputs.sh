@@ -6,7 +6,7 @@ source "$(dirname "$0")/lib.sh" "$1"
 peak_below() {
   local limit=$1 peak
   shift
-  command -v /usr/bin/time >/dev/null || return 0
+  has /usr/bin/time || return 0
   /usr/bin/time -f '%M' -o "$log/peak" "$bin/$1" "${@:2}" >/dev/null 2>&1
   peak=$(tail -n 1 "$log/peak")
   [ "$peak" -lt $((limit * 1024)) ] || fail "$* took $peak KiB, more than $limit MiB"
@@ -15,13 +15,7 @@ peak_below() {
 "$bin/probesynth" --scene studio --size 64 -q -o studio.hdr >/dev/null
 "$bin/probe2maps" studio.hdr -q --size 64 -o world.haar >/dev/null
 "$bin/maps2haar" world.haar --pack -q -o packed.haar >/dev/null
-cat >scene.json <<'END'
-{ "film": {"width": 8, "height": 8},
-  "camera": {"type": "perspective", "from": [0, 0.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 30},
-  "light": {"probe": "studio.hdr", "haar": "world.haar"},
-  "materials": {"floor": {"lambert": [0.5, 0.5, 0.5]}},
-  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "floor"}] }
-END
+grey_scene scene.json 8 8 '"probe": "studio.hdr", "haar": "world.haar"'
 
 # Pipes give the same bytes as files.
 expect 0 probe2maps - -q --size 64 -o pipe.haar < <(cat studio.hdr)
@@ -55,7 +49,7 @@ expect 0 brdf2maps - "${maps[@]}" -o pipe.haar < <(cat gloss.binary)
 expect 0 haardiff file.haar pipe.haar --max-linf 0
 expect 0 brdf2maps <(cat gloss.binary) "${maps[@]}" -o pipe.haar
 expect 0 haardiff file.haar pipe.haar --max-linf 0
-"$bin/haarrender" scene.json --size 16x8 --spp 1 -q -o image.exr --png image.png >/dev/null
+"$bin/haarrender" scene.json --size 16x8 --spp 1 -q -o image.exr --image image.png >/dev/null
 { printf 'PF\n2 1\n-1.0\n'; head -c 24 studio.hdr | tr -c '[:lower:]' b; } >image.pfm
 for image in image.exr image.png image.pfm; do
   expect 0 probe2maps $image --mapping latlong -q --size 16 -o file.haar
@@ -117,7 +111,7 @@ if [ -f "$bomb" ]; then
   expect 1 haarinfo --validate "$bomb"
   peak_below 64 haarinfo --validate "$bomb"
 else
-  echo "SKIPPED: no packed_bomb_1.haar"
+  skip "the shared data lack packed_bomb_1.haar"
 fi
 
 # Outputs that cannot fit.

@@ -10,17 +10,69 @@ mkdir "$work"
 trap 'rm -rf "$log"' EXIT
 cd "$work" || exit 1
 failures=0
+skipped=
+tools="brdfsynth probesynth brdf2maps probe2maps maps2haar haarinfo haardiff haarprod haarrender haarrelight haarsheet haarbench"
+[ ! -x "$bin/haarview" ] || tools="$tools haarview"
 
 fail() {
   echo "FAILED: $*"
   failures=$((failures + 1))
 }
 
+# skip REASON: a part of the test cannot run on this machine. ctest then reports the whole test as skipped,
+# although its other parts have passed.
+skip() {
+  [[ $skipped == *"<$*>"* ]] || echo "SKIPPED: $*"
+  skipped="$skipped<$*>"
+}
+
+# has PROGRAM: whether it is installed; if not, that counts as skipped.
+has() { command -v "$1" >/dev/null || { skip "$1 is not installed"; return 1; }; }
+
 # check MESSAGE COMMAND…: the command must succeed.
 check() {
   local message=$1
   shift
   "$@" >/dev/null 2>&1 || fail "$message: $*"
+}
+
+# valid_json: the last command's stdout is.
+valid_json() { if has python3; then check "valid JSON" python3 -m json.tool "$log/out"; fi; }
+
+# number EXPRESSION: of awk; it must hold.
+number() { awk "BEGIN { exit !($1) }" || fail "not true: $1"; }
+
+# value NAME: the first number of that name in the last command's JSON.
+value() { sed -n "s/^ *\"$1\": \([-0-9.e+]*\|null\),\{0,1\}$/\1/p" "$log/out" | head -n 1; }
+
+# worst_map: sets column and row to those of the worst map in the JSON of haardiff.
+# shellcheck disable=SC2034 # the test uses them
+worst_map() {
+  column=$(sed -n '/worst_map/,$p' "$log/out" | sed -n 's/^ *"column": \([0-9]*\),$/\1/p' | head -n 1)
+  row=$(sed -n '/worst_map/,$p' "$log/out" | sed -n 's/^ *"row": \([0-9]*\),$/\1/p' | head -n 1)
+}
+
+# make_brdf NAME ARGUMENTS…: NAME.binary, of brdfsynth's GGX model, and NAME.haar.
+make_brdf() {
+  "$bin/brdfsynth" --model ggx -q -o "$1.binary" "${@:2}" >/dev/null
+  "$bin/brdf2maps" "$1.binary" -q --size 64 --theta 16 --conservation-tolerance 1 -o "$1.haar" >/dev/null
+}
+
+# make_probe SCENE: SCENE.hdr, of probesynth, and SCENE.haar.
+make_probe() {
+  "$bin/probesynth" --scene "$1" --size 64 -q -o "$1.hdr" >/dev/null
+  "$bin/probe2maps" "$1.hdr" -q --size 64 -o "$1.haar" >/dev/null
+}
+
+# grey_scene FILE WIDTH HEIGHT LIGHT: a grey sphere; LIGHT are the members of the scene's light.
+grey_scene() {
+  cat >"$1" <<END
+{ "film": {"width": $2, "height": $3},
+  "camera": {"type": "perspective", "from": [0, 0.5, 6], "to": [0, 0, 0], "up": [0, 1, 0], "fov": 30},
+  "light": {$4},
+  "materials": {"floor": {"lambert": [0.5, 0.5, 0.5]}},
+  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "floor"}] }
+END
 }
 
 # same A B: two files must be equal.
@@ -39,7 +91,10 @@ expect() {
   [ ! -s "$log/out" ] || fail "$tool $*: wrote to stdout and failed"
 }
 
-# says WORDS: of the last command's stderr; prints WORDS: of its stdout.
+# samplers_of FILE: those that haarrender --help, in the file, lists.
+samplers_of() { sed -n 's/^ *--sampler \([a-z|-]*\).*/\1/p' "$1" | tr '|' ' '; }
+
+# says TEXT: the last command's stderr contains it; prints TEXT: its stdout does.
 says() { grep -qF -- "$1" "$log/err" || fail "stderr lacks '$1': $(cat "$log/err")"; }
 prints() { grep -qF -- "$1" "$log/out" || fail "stdout lacks '$1': $(head -c 500 "$log/out")"; }
 
@@ -100,4 +155,5 @@ patch() { printf '%b' "$3" | dd of="$1" bs=1 seek="$2" conv=notrunc status=none;
 
 finish() {
   [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
+  [ -z "$skipped" ] || exit 77
 }

@@ -115,10 +115,10 @@ before=$(cat "${inputs[@]}" | cksum)
 ln -s scene.json scene-link.json
 ln probe.hdr probe-link.exr
 ln -s new.png new-link.png
-expect 2 haarrender scene.json -o a.exr --png ./a.exr
-says "--png: './a.exr' is the same file as the output --output"
-expect 2 haarrender scene.json -o new.png --png new-link.png
-expect 2 haarrender scene.json -o - --png -
+expect 2 haarrender scene.json -o a.exr --image ./a.exr
+says "--image: './a.exr' is the same file as the output --output"
+expect 2 haarrender scene.json -o new.png --image new-link.png
+expect 2 haarrender scene.json -o - --image -
 expect 2 haarrender scene.json -o ../work/scene-link.json
 says "--output: '../work/scene-link.json' is the same file as the input SCENE.json"
 expect 2 haarrender scene.json -o brdf.haar
@@ -128,7 +128,7 @@ expect 2 probe2maps probe.exr -o probe.exr
 expect 2 probe2maps probe.hdr -o probe-link.exr
 expect 2 maps2haar brdf.haar --pack -o ./brdf.haar
 expect 2 haarinfo brdf.haar --image a.png --html a.png
-expect 2 haarinfo brdf.haar --html page.html --against probe.exr --image probe.exr
+expect 2 haarinfo brdf.haar --html page.html --reference probe.exr --image probe.exr
 expect 2 haardiff brdf.haar brdf.haar --image brdf.haar # of no picture's extension
 expect 2 haardiff probe.exr probe.exr --image probe.exr
 expect 2 haarprod 'brdf.haar[0,0]' brdf.haar -o brdf.haar
@@ -137,7 +137,7 @@ expect 2 haarbench --brdf brdf.binary --probe probe.hdr -o -
 "$bin/haarrelight" build scene.json -q -o T.haar --resolution 8 >/dev/null
 expect 2 haarrelight apply T.haar -o T.haar
 expect 2 haarrelight apply T.haar -o scene.json
-expect 2 haarrelight apply T.haar -o a.exr --png a.exr
+expect 2 haarrelight apply T.haar -o a.exr --image a.exr
 expect 2 haarrelight sweep T.haar -o -
 if [ -x "$bin/haarview" ]; then
   expect 2 haarview scene.json --frame brdf.haar.png --export brdf.haar.png
@@ -155,12 +155,12 @@ streamed() {
   "$bin/$tool" "$@" 2>"$log/err" | cat >"$log/stream"
   cmp -s "$file" "$log/stream" || fail "$tool $*: standard output differs from a file: $(cat "$log/err")"
 }
-expect 0 haarrender scene.json --spp 1 -o a.exr --png a.png
+expect 0 haarrender scene.json --spp 1 -o a.exr --image a.png
 streamed a.exr haarrender scene.json --spp 1 -o - --json
 grep -q '"samples_per_pixel"' "$log/err" || fail "the report is not on stderr"
 streamed a.exr haarrender scene.json --spp 1 -o - --quiet
 [ ! -s "$log/err" ] || fail "--quiet prints: $(cat "$log/err")"
-streamed a.png haarrender scene.json --spp 1 -o b.exr --png -
+streamed a.png haarrender scene.json --spp 1 -o b.exr --image -
 streamed probe.hdr probesynth --scene studio --size 64 -o -
 streamed brdf.binary brdfsynth --model ggx -o -
 streamed probe.exr probe2maps probe.hdr --size 32 -o -
@@ -222,7 +222,7 @@ if mount -t tmpfs -o size=128k tmpfs full 2>/dev/null; then
   done
   umount full
 else
-  echo "SKIPPED: a full disk, as mounting is not permitted"
+  skip "a full disk: mounting is not permitted"
 fi
 rmdir full
 finish

@@ -52,7 +52,7 @@ const std::vector<Case> cases = {
     {"haarinfo", {"haarinfo", "../in/packed.haar", "--html", "out.html"}, {"out.html"}},
     {"haardiff", {"haardiff", "../in/light.haar", "../in/light.exr", "--image", "out.png"}, {"out.png"}},
     {"haarprod", {"haarprod", "../in/light.haar", "../in/light.haar", "-o", "out.haar"}, {"out.haar"}},
-    {"haarrender", {"haarrender", "../in/scene.json", "--spp", "1", "-o", "out.exr", "--png", "out.png"}, {"out.exr", "out.png"}},
+    {"haarrender", {"haarrender", "../in/scene.json", "--spp", "1", "-o", "out.exr", "--image", "out.png"}, {"out.exr", "out.png"}},
     {"haarrelight-build", {"haarrelight", "build", "../in/scene.json", "--vary", "light", "--tolerance", "0.3", "--resolution", "8", "-o", "out.haar"}, {"out.haar"}},
     {"haarrelight-apply", {"haarrelight", "apply", "../in/transfer.haar", "-o", "out.exr"}, {"out.exr"}},
     {"haarsheet", {"haarsheet", "../in/picture.exr", "../in/picture.exr", "-o", "out.png"}, {"out.png"}},

@@ -31,7 +31,7 @@ cat >scene.json <<'END'
  "light": {"haar": "light.haar"}, "materials": {"floor": {"lambert": [0.5, 0.5, 0.5]}},
  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "floor"}]}
 END
-"$bin/haarrender" scene.json -q --spp 1 -o picture.exr --png picture.png >/dev/null
+"$bin/haarrender" scene.json -q --spp 1 -o picture.exr --image picture.png >/dev/null
 "$bin/haarrelight" build scene.json -q --vary light --tolerance 0.3 --resolution 8 -o transfer.haar >/dev/null
 printf 'PF\n2 1\n-1.0\n%24s' '' >probe.pfm
 

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <string>
 
 #include <stdlib.h>
@@ -45,15 +44,14 @@ inline std::string bytes_of_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A file of the real data, or nothing and a message that the test is skipped.
-inline std::optional<std::string> real_probe(const std::string& name) {
+/// The path of a captured probe, which must exist.
+inline std::string real_probe(const std::string& name) {
   const char* folder = std::getenv("HAARLIGHT_DATA");
   const std::filesystem::path data(folder != nullptr ? folder : HAARLIGHT_SHARED_DATA);
   const auto path = data / "probes" / name;
-  if (std::filesystem::exists(path))
-    return path.string();
-  WARN("skipped: " << name << " is not there (set HAARLIGHT_DATA)");
-  return std::nullopt;
+  INFO(path);
+  REQUIRE(std::filesystem::exists(path));
+  return path.string();
 }
 
 /// What an Error said, or an empty text if none was thrown.

@@ -1,9 +1,9 @@
 #pragma once
 // The measurement of one BRDF under one probe in one scene.
 
-#include <bench/pairs.h>
+#include <bench/inputs.h>
 #include <bench/plan.h>
-#include <bench/rows.h>
+#include <bench/results.h>
 
 #include <wavelet/base/image.h>
 
@@ -13,7 +13,7 @@
 
 namespace haarlight::bench {
 
-/// A picture of one sampler, of the smallest budget at equal time.
+/// A picture of one sampler at equal time, with the smallest budget.
 struct Exhibit {
   renderer::SamplerKind sampler = renderer::SamplerKind::Product;
   int spp = 0;
@@ -32,7 +32,7 @@ struct PairResult {
   std::vector<Exhibit> exhibits;
 };
 
-/// Called with units of work done, of those that work_units() tells.
+/// Called with units of finished work, of work_units() in total.
 using WorkDone = std::function<void(double units)>;
 
 /// Renders the reference, then every sampler at equal samples and at equal time.

@@ -1,7 +1,7 @@
 #pragma once
-// What haarbench is asked to do.
+// The comparisons that haarbench is to make.
 
-#include <bench/cache.h>
+#include <bench/inputs.h>
 #include <support/tool.h>
 
 #include <renderer/film/render.h>
@@ -14,15 +14,15 @@ namespace haarlight::bench {
 
 enum class PointChoice { Random, Sobol, Both };
 
-/// As on the command line; check() makes the lists of words into those of numbers and kinds.
+/// The command line of haarbench; check() completes it.
 struct Plan {
   std::vector<std::string> brdfs;
   std::vector<std::string> probes;
   std::vector<std::string> scenes;
   std::string folder;
-  std::vector<std::string> sampler_words;
-  std::vector<std::string> spp_words;
-  std::vector<std::string> seconds_words;
+  std::vector<renderer::SamplerKind> samplers; ///< the first is the base of equal times
+  std::vector<int> spps = {16, 64, 256};       ///< rising
+  std::vector<double> seconds;                 ///< rising; empty: the base's own times
   std::string size = "64x64";
   PointChoice point_choice = PointChoice::Sobol;
   int seeds = 4;
@@ -32,25 +32,22 @@ struct Plan {
   renderer::RenderOptions render; ///< estimator and sampling options that all runs share
   CacheOptions cache;
 
-  std::vector<renderer::SamplerKind> samplers; ///< the first is the base of equal times
-  std::vector<int> spps;                       ///< rising
-  std::vector<double> seconds;                 ///< rising; empty: the base's own times
   std::vector<renderer::Points> points;
 };
 
-/// Independent runs that the reference is averaged from.
+/// Independent runs whose average is the reference.
 inline constexpr int reference_runs = 8;
 
 /// Declares all options.
 void declare(tool::Tool& app, Plan& plan);
 
-/// Completes the plan. @throws UsageError for what cannot be
+/// Completes the plan. @throws UsageError for contradictory or invalid options
 void check(Plan& plan);
 
-/// Units of work that one pair takes: samples per pixel of all runs, roughly.
+/// Units of work of one pair: approximately the samples per pixel of all runs.
 double work_units(const Plan& plan);
 
-/// A path's name without directories and without what follows its last dot.
+/// The file name of a path without its extension.
 std::string stem_of(const std::string& path);
 
 } // namespace haarlight::bench

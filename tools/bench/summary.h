@@ -1,7 +1,7 @@
 #pragma once
 // Who wins.
 
-#include <bench/rows.h>
+#include <bench/results.h>
 
 #include <support/report.h>
 

@@ -55,7 +55,7 @@ std::string level_bars_html(const tool::TreeFigures& sum, std::size_t trees) {
     const double possible =
         static_cast<double>(3 * trees) * std::ldexp(1.0, 2 * static_cast<int>(l));
     counts.push_back({label, static_cast<double>(sum.levels[l].nonzero), possible});
-    energies.push_back({label, tool::share(sum.levels[l].energy, sum.energy), 0});
+    energies.push_back({label, tool::fraction(sum.levels[l].energy, sum.energy), 0});
   }
   return "<div class=\"plots\">" +
          html::bar_plot(counts,

@@ -1,7 +1,7 @@
 #pragma once
 // haarinfo's page about a .haar file.
 
-#include <support/compare_input.h>
+#include <support/compare.h>
 #include <support/inspect.h>
 
 #include <wavelet/file/tree_set.h>

@@ -4,7 +4,7 @@
 #include <html/png_uri.h>
 #include <html/text.h>
 
-#include <support/compare_picture.h>
+#include <support/compare.h>
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/file/input_file.h>

@@ -1,7 +1,7 @@
 #pragma once
 // The part of the page that compares the trees with the maps they were made of.
 
-#include <support/compare_input.h>
+#include <support/compare.h>
 
 #include <string>
 

@@ -1,7 +1,8 @@
 #include <relight/session.h>
 
 #include <render/film_output.h>
-#include <support/words.h>
+#include <support/arguments.h>
+#include <support/report.h>
 
 #include <image/image_exr.h>
 
@@ -25,18 +26,18 @@ std::string scene_path(const ChangeOptions& options, const Transfer& transfer) {
   return folder + transfer.scene_name();
 }
 
-/// What an option changes, and whether that is what varies.
+/// Refuses an option that does not fit the varying factor.
 void require_fit(const Tool& app, const Transfer& transfer, const char* option, bool fits,
                  const char* wanted) {
-  if (app.knows(option) && app.given(option) && !fits)
-    throw UsageError(std::string(option) + ": " + transfer.path() + " lets " +
-                     transfer.varying_text() + " vary; this takes one built with --vary " + wanted);
+  if (app.declares(option) && app.given(option) && !fits)
+    throw UsageError(std::string(option) + ": " + transfer.path() + " was built with --vary " +
+                     transfer.varying_text() + ", not " + wanted);
 }
 
 void check_fit(const Tool& app, const Transfer& transfer, Varying varying) {
   const bool light = varying == Varying::Light;
   const bool moves = varying == Varying::Object || varying == Varying::View;
-  require_fit(app, transfer, "--light", light, "light");
+  require_fit(app, transfer, "--probe", light, "light");
   require_fit(app, transfer, "--brdf", varying == Varying::Material, "material:NAME");
   for (const char* option : {"--rotate", "--rotate-from", "--rotate-to"})
     require_fit(app, transfer, option, light, "light");
@@ -44,13 +45,13 @@ void check_fit(const Tool& app, const Transfer& transfer, Varying varying) {
     require_fit(app, transfer, option, moves, "object:NAME or view");
 }
 
-/// The scene with the files that take the place of its own.
+/// Replaces files of the scene by those given.
 void replace_sources(const ChangeOptions& options, const Variation& variation,
                      SceneDescription& scene) {
-  if (!options.light.empty()) {
-    const bool trees = has_extension(options.light, ".haar");
-    scene.light.probe = trees ? "" : options.light;
-    scene.light.haar = trees ? options.light : "";
+  if (!options.probe.empty()) {
+    const bool trees = has_extension(options.probe, ".haar");
+    scene.light.probe = trees ? "" : options.probe;
+    scene.light.haar = trees ? options.probe : "";
     scene.light.table.clear();
     scene.light.mapping = "auto";
   }
@@ -71,17 +72,16 @@ std::string list_text(double x, double y, double z) {
 } // namespace
 
 void declare_change(Tool& app, ChangeOptions& options) {
-  app.input(options.transfer, "T.haar", "Transfer that haarrelight build made");
+  app.input(options.transfer, "T.haar", "Transfer made by haarrelight build");
   app.optional_input(options.scene, "--scene", "SCENE.json",
-                     "The scene it was made of [the file of that name beside T.haar]");
+                     "The scene of the transfer [the file of that name beside T.haar]");
   app.optional_input(
-      options.light, "--light", "PROBE",
-      "Another light for --vary light: any probe image, or a .haar of one world-frame map [the "
-      "scene's]");
+      options.probe, "--probe", "PROBE",
+      "light: another light: a probe image, or a .haar with one world-frame map [the scene's]");
   app.optional_input(
       options.brdf, "--brdf", "BRDF",
-      "Another reflectance for --vary material: a MERL file, or a .haar of its θ_r-only set "
-      "[the scene's]");
+      "material: another BRDF: a MERL file, or a .haar made from one without --roll [the scene's]");
+  app.alias("--light", "--probe");
 }
 
 RelightInput::RelightInput(const Tool& app, const ChangeOptions& options)
@@ -97,7 +97,7 @@ void write_relit_exr(const std::string& path, const Film& film, const Transfer& 
                      const ChangeOptions& options, const Change& change) {
   Provenance p = transfer.provenance();
   p.set("transfer_hash", file_hash(options.transfer));
-  for (const auto& [name, file] : {std::pair("light", options.light), {"brdf", options.brdf}})
+  for (const auto& [name, file] : {std::pair("light", options.probe), {"brdf", options.brdf}})
     if (!file.empty())
       p.set(name, base_name(file) + " " + file_hash(file));
   p.set("rotate", list_text(change.rotate[0], change.rotate[1], change.rotate[2]));

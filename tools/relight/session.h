@@ -1,5 +1,6 @@
 #pragma once
-// What `apply` and `sweep` share: an opened transfer with its scene, and what is changed.
+// An opened transfer with its scene and the changes of its varying factor; shared by apply, sweep
+// and haarview.
 
 #include <support/tool.h>
 
@@ -10,20 +11,20 @@
 
 namespace haarlight::tool {
 
-/// The options that say what the varying factor becomes.
+/// Options for the varying factor.
 struct ChangeOptions {
   std::string transfer;
   std::string scene;
-  std::string light;
+  std::string probe;
   std::string brdf;
 };
 
 void declare_change(Tool& app, ChangeOptions& options);
 
-/// A transfer and its scene, with the files that take the place of the scene's own.
+/// A transfer and its scene, files of which the options may replace.
 class RelightInput {
 public:
-  /// @throws UsageError if what is asked for does not vary in the transfer
+  /// @throws UsageError for options that do not fit the varying factor of the transfer
   /// @throws Error(Input)
   RelightInput(const Tool& app, const ChangeOptions& options);
 
@@ -37,7 +38,7 @@ private:
   renderer::Variation m_variation;
 };
 
-/// The same with what makes pictures of them.
+/// The same with a Relighter.
 class RelightSession {
 public:
   /// @throws as RelightInput
@@ -54,7 +55,7 @@ private:
   std::unique_ptr<renderer::Relighter> m_relighter;
 };
 
-/// Writes R, G, B with the transfer's provenance and what was changed. @throws Error(Output)
+/// Writes R, G, B with the provenance of the transfer and of the change. @throws Error(Output)
 void write_relit_exr(const std::string& path, const renderer::Film& film,
                      const renderer::Transfer& transfer, const ChangeOptions& options,
                      const renderer::Change& change);

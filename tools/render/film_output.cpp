@@ -1,7 +1,7 @@
 #include <render/film_output.h>
 
+#include <support/report.h>
 #include <support/tool.h>
-#include <support/words.h>
 
 #include <image/image_exr.h>
 #include <image/png.h>
@@ -34,7 +34,7 @@ std::vector<std::string> sources_of(const SceneDescription& scene) {
   return files;
 }
 
-/// The options of all samplers, so that they need not be told apart here.
+/// The options of all samplers.
 void set_sampling(const SamplerOptions& sampling, Provenance& result) {
   result.set("product variance", short_text(static_cast<double>(sampling.product.variance_bound)));
   result.set("product drift", short_text(static_cast<double>(sampling.product.drift_bound)));
@@ -126,7 +126,7 @@ void set_film_size(const std::string& text, SceneDescription& scene) {
   const bool crossed = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
   const auto second = std::from_chars(crossed ? first.ptr + 1 : end, end, height);
   if (second.ec != std::errc() || second.ptr != end)
-    throw UsageError("--size: '" + text + "' is not like 640x480");
+    throw UsageError("--size: '" + text + "' is not of the form WIDTHxHEIGHT, as in 640x480");
   const std::string problem = film_size_problem(width, height);
   if (!problem.empty())
     throw UsageError("--size: " + problem);

@@ -1,5 +1,5 @@
 #pragma once
-// What haarrender says and writes of a rendering.
+// Output of rendered pictures, and files named by scenes.
 
 #include <renderer/film/render.h>
 #include <support/tool.h>
@@ -24,13 +24,13 @@ void write_film_exr(const std::string& path, const renderer::RenderResult& resul
                     const renderer::SceneDescription& scene, const renderer::RenderOptions& options,
                     const std::vector<std::pair<std::string, std::string>>& integrator);
 
-/// Writes the tone-mapped picture, brightened by some stops. @throws Error(Output)
+/// Writes the tone-mapped picture. @param exposure in stops. @throws Error(Output)
 void write_film_png(const std::string& path, const renderer::Film& film, double exposure);
 
-/// Size, cost and quality.
+/// Size, cost and quality of a rendering.
 Report describe(const renderer::RenderResult& result);
 
-/// Gives the scene a film of a size as in 640x480. @throws UsageError
+/// Sets the film size from a text as in 640x480. @throws UsageError
 void set_film_size(const std::string& text, renderer::SceneDescription& scene);
 
 } // namespace haarlight::tool

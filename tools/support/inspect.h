@@ -1,5 +1,5 @@
 #pragma once
-// What haarinfo tells of a .haar file: figures, pictures, coefficients.
+// Statistics, pictures and coefficients of a .haar file, for haarinfo.
 
 #include <support/report.h>
 
@@ -39,7 +39,7 @@ std::vector<wavelet::MapPlace> all_trees(const wavelet::TreeSet& set);
 std::vector<TreeFigures> measure_trees(const wavelet::TreeSet& set,
                                        const std::vector<wavelet::MapPlace>& trees, int level);
 
-/// What they hold together. @param levels of their set
+/// Their sum. @param levels of their set
 TreeFigures sum_of(const std::vector<TreeFigures>& figures, int levels);
 
 /// `mapped` or `packed`.
@@ -52,7 +52,7 @@ Report describe_header(const wavelet::TreeSet& set, wavelet::FileForm form);
 void describe_figures(const std::vector<TreeFigures>& figures, int levels, bool list_trees,
                       Report& report);
 
-/// A tree reconstructed at a level, as it is (linear, possibly negative).
+/// A tree reconstructed at a level: linear, possibly negative.
 Image tree_picture(const wavelet::TreeView& tree, int level);
 
 /// The finest level at which atlas() stays within `largest_side` pixels a side.

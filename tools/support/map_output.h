@@ -1,5 +1,5 @@
 #pragma once
-// What every program that makes maps does with them: one tiled EXR, or a compressed .haar file.
+// Output of map sets: one tiled EXR, or a compressed .haar file.
 
 #include <support/tool.h>
 
@@ -11,7 +11,7 @@
 
 namespace haarlight::tool {
 
-/// Where maps go. Declare one, pass it to add_map_output() before and to write_map_set() inside
+/// Options of the output. Pass it to add_map_output() before and to write_map_set() inside
 /// Tool::run().
 struct MapOutput {
   std::string path;          ///< *.exr or *.haar
@@ -32,18 +32,18 @@ wavelet::CompressOptions compress_options(const MapOutput& output, const wavelet
 /// @throws UsageError if one of the compression options was given
 void refuse_compress_options(const Tool& tool);
 
-/// @throws UsageError if one of them was given that changes trees: any but --pack
+/// @throws UsageError if one that changes trees, any but --pack, was given
 void refuse_threshold_options(const Tool& tool);
 
 /// Declares -o, the compression options, --conservation-tolerance and --json.
 void add_map_output(Tool& tool, MapOutput& output);
 
-/// Makes and writes all maps and prints one report, whose first lines are those of `report`. Both
-/// ways to a .haar file, direct or by an EXR, give the same bytes.
-/// @return exit_ok, or exit_no (and no file) if the maps miss the source's integrals by more than
-///         the tolerance
-/// @throws UsageError for an unknown extension or contradicting options, and whatever source and
-///         file throw
+/// Computes and writes all maps and prints a report, which begins with `report`. A .haar file has
+/// the same bytes whether written directly or by way of an EXR.
+/// @return exit_ok, or exit_no (and no file) if the error of the integrals exceeds
+///         conservation_tolerance
+/// @throws UsageError for an unknown extension or contradicting options, and errors of source and
+///         file
 int write_map_set(const Tool& tool, const wavelet::MapSource& source, const MapOutput& output,
                   Report report = {});
 

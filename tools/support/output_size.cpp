@@ -1,7 +1,5 @@
 #include <support/output_size.h>
 
-#include <support/words.h>
-
 #include <wavelet/base/available_memory.h>
 #include <wavelet/base/error.h>
 #include <wavelet/base/parallel.h>
@@ -52,7 +50,7 @@ void require(const std::string& path, std::uint64_t needed, std::uint64_t there,
 
 void add_force(Tool& tool, bool& force) {
   tool.flag(force, "--force",
-            "Start even if the output is estimated to exceed the memory or disk space available");
+            "Start even if the output is estimated to exceed the available memory or disk space");
 }
 
 void require_room(const std::string& path, const OutputSize& size, bool force) {

@@ -1,5 +1,5 @@
 #pragma once
-// Outputs that cannot fit are refused before any work is done.
+// Estimates of memory and disk space: outputs that do not fit are refused before any work is done.
 
 #include <support/tool.h>
 
@@ -10,13 +10,13 @@
 
 namespace haarlight::tool {
 
-/// Bytes that making an output takes, as estimated before it is made.
+/// Estimated size of an output in bytes.
 struct OutputSize {
   std::uint64_t memory = 0;
   std::uint64_t disk = 0;
 };
 
-/// Declares --force, by which a user insists.
+/// Declares --force.
 void add_force(Tool& tool, bool& force);
 
 /// @throws Error(Output), with the sizes, if the estimate exceeds the memory available or the free
@@ -26,8 +26,8 @@ void require_room(const std::string& path, const OutputSize& size, bool force);
 /// An EXR with the pixels of all maps, uncompressed.
 OutputSize exr_set_size(const wavelet::SetInfo& info);
 
-/// A .haar file. Trees are thresholded; those of measured BRDFs and probes take 1 to 10 % of what
-/// all coefficients would, and the estimate is 1 %. @param node_bytes of a node with its link
+/// A .haar file. Thresholded trees of measured BRDFs and probes keep 1 to 10 % of all coefficients;
+/// the estimate is 1 %. @param node_bytes of a node with its link
 OutputSize haar_set_size(const wavelet::SetInfo& info, std::uint64_t node_bytes);
 
 /// A rendered film: nine floats a pixel, held twice while the EXR is written.

@@ -1,5 +1,5 @@
 #pragma once
-// A progress bar with the time left, for work that lasts.
+// A progress bar with the estimated remaining time.
 
 #include <chrono>
 #include <functional>
@@ -14,9 +14,9 @@ class Tool;
 /// half a second. Callable from several threads.
 class ProgressBar {
 public:
-  /// @param what the work, as in "compressing maps"
+  /// @param what describes the work, as in "compressing maps"
   ProgressBar(const Tool& tool, std::string what);
-  /// Wipes the bar.
+  /// Erases the bar.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;

@@ -1,5 +1,5 @@
 #pragma once
-// Results of a program: named values, printed as aligned text for people or as one JSON object.
+// Results of a program: named values, printed as aligned text or as one JSON object.
 
 #include <cstdint>
 #include <string>
@@ -9,8 +9,15 @@
 
 namespace haarlight::tool {
 
-/// part / whole, 0 of nothing.
-inline double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
+/// part / whole; 0 if the whole is 0.
+inline double fraction(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
+/// Six significant digits, as in 0.00123 or 1.5e-07.
+std::string short_text(double number);
+/// Enough digits to read the same number back.
+std::string exact_text(double number);
+/// Bytes as in `1.25 MiB`.
+std::string size_text(std::uint64_t bytes);
 
 /// An ordered list of entries. Names are JSON keys in snake_case; the text form shows them with
 /// spaces. Numbers that are not finite become null in JSON.
@@ -20,8 +27,8 @@ public:
 
   struct Entry;
 
-  /// @param value text, a truth, a whole or real number, or a list of real numbers
-  /// @param unit  shown after the value in the text form only, so a name should tell it too
+  /// @param value text, a boolean, an integer, a real number, or a list of real numbers
+  /// @param unit  shown after the value in the text form only, so the name should imply it
   template <class T>
   Report& add(const std::string& name, const T& value, const std::string& unit = {}) {
     if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::vector<double>>)
@@ -34,10 +41,10 @@ public:
       return put(name, Value(std::string(value)), unit);
   }
 
-  /// A nested object. The reference holds until the next call on this report.
+  /// A nested object. The reference is valid until the next call on this report.
   Report& section(const std::string& name);
   /// Appends an object to the list `name`, which the text form shows as a table; all rows of a list
-  /// must have the same names. The reference holds until the next call on this report.
+  /// must have the same names. The reference is valid until the next call on this report.
   Report& row(const std::string& name);
 
   std::string text() const;

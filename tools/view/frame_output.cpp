@@ -1,6 +1,6 @@
 #include <view/frame_output.h>
 
-#include <support/words.h>
+#include <support/arguments.h>
 
 #include <image/image_exr.h>
 #include <image/png.h>

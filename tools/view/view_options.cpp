@@ -1,6 +1,6 @@
 #include <view/view_options.h>
 
-#include <support/words.h>
+#include <support/arguments.h>
 
 #include <wavelet/file/output_file.h>
 

@@ -37,14 +37,11 @@ inline std::filesystem::path measurement_folder() {
   return std::filesystem::path(set != nullptr ? set : HAARLIGHT_SHARED_DATA) / "brdf";
 }
 
-/// Unpacks a measurement into `folder`. @return its path, or nothing (and a warning) if it is
-/// absent
+/// Unpacks a measurement into `folder`. @return its path
 inline std::string unpack_measurement(const std::string& name, const TemporaryFolder& folder) {
   const auto packed_path = measurement_folder() / (name + ".binary.zst");
-  if (!std::filesystem::exists(packed_path)) {
-    WARN("skipped, no measurement " + name + ".binary.zst");
-    return {};
-  }
+  INFO(packed_path);
+  REQUIRE(std::filesystem::exists(packed_path));
   const std::string packed = read_bytes(packed_path.string());
   std::string bytes(ZSTD_getFrameContentSize(packed.data(), packed.size()), '\0');
   REQUIRE(ZSTD_decompress(bytes.data(), bytes.size(), packed.data(), packed.size()) ==

@@ -152,23 +152,18 @@ TEST_CASE("The mapping is found by aspect and content", "[mapping]") {
              Catch::Contains("probe.hdr: is 65") && Catch::Contains("square"));
 }
 
-TEST_CASE("The mapping of the real probes is found", "[mapping][data]") {
+TEST_CASE("The mapping of the real probes is found", "[mapping][shared-data]") {
   for (const char* name : {"grace_probe.hdr", "rnl_probe.hdr", "venice_sunset_angular_256.hdr",
                            "studio_small_03_angular_256.hdr"})
-    if (const auto path = real_probe(name))
-      CHECK(read_probe(*path).probe.mapping() == Mapping::Angular);
+    CHECK(read_probe(real_probe(name)).probe.mapping() == Mapping::Angular);
   for (const char* name : {"grace_probe_latlong_512x256_hdrshop.hdr", "venice_sunset_1k.hdr"})
-    if (const auto path = real_probe(name))
-      CHECK(read_probe(*path).probe.mapping() == Mapping::LatLong);
+    CHECK(read_probe(real_probe(name)).probe.mapping() == Mapping::LatLong);
 }
 
-TEST_CASE("grace as angular map agrees with its independent lat-long", "[mapping][data]") {
-  const auto angular_path = real_probe("grace_probe.hdr");
-  const auto latlong_path = real_probe("grace_probe_latlong_512x256_hdrshop.hdr");
-  if (!angular_path || !latlong_path)
-    return;
-  const Probe angular = read_probe(*angular_path, std::nullopt, Lookup::Bilinear).probe;
-  const Probe latlong = read_probe(*latlong_path).probe;
+TEST_CASE("grace as angular map agrees with its independent lat-long", "[mapping][shared-data]") {
+  const Probe angular =
+      read_probe(real_probe("grace_probe.hdr"), std::nullopt, Lookup::Bilinear).probe;
+  const Probe latlong = read_probe(real_probe("grace_probe_latlong_512x256_hdrshop.hdr")).probe;
   CHECK(luminance(angular.integral()) == Approx(luminance(latlong.integral())).epsilon(0.01));
   double n = 0;
   Eigen::Vector2d sum(0, 0);

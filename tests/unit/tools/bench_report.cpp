@@ -1,13 +1,15 @@
-// What haarbench makes of its command line, and of its figures.
+// The command line of haarbench, and its reports.
 #include <bench/look.h>
 #include <bench/pictures.h>
 #include <bench/plan.h>
-#include <bench/rows.h>
+#include <bench/results.h>
 #include <bench/summary.h>
 
 #include <html/plot.h>
 
 #include <catch2/catch.hpp>
+
+#include <optional>
 
 using namespace haarlight;
 using namespace haarlight::bench;
@@ -28,28 +30,36 @@ Row row(const std::string& sampler, double relmse, int spp = 16) {
   return result;
 }
 
-Plan plan_of(const std::vector<std::string>& samplers, const std::vector<std::string>& spps) {
+/// The plan that haarbench makes of its command line; nothing if it refuses it.
+std::optional<Plan> plan_of(std::vector<const char*> words) {
+  const std::vector<const char*> rest = {"--brdf", "a.binary", "--probe", "p.hdr", "-o", "out"};
+  words.insert(words.begin(), "haarbench");
+  words.insert(words.end(), rest.begin(), rest.end());
+  tool::Tool app("haarbench", "Tests.");
   Plan plan;
-  plan.brdfs = {"a.binary"};
-  plan.probes = {"p.hdr"};
-  plan.sampler_words = samplers;
-  plan.spp_words = spps;
-  check(plan);
-  return plan;
+  declare(app, plan);
+  const int code = app.run(static_cast<int>(words.size()), words.data(), [&] {
+    check(plan);
+    return tool::exit_ok;
+  });
+  return code == tool::exit_ok ? std::optional(plan) : std::nullopt;
 }
 
 } // namespace
 
 TEST_CASE("lists may be given by commas or one by one", "[bench]") {
   using renderer::SamplerKind;
-  const Plan plan = plan_of({"mis,product", "mis"}, {"64", "4,16", "4"});
-  CHECK(plan.samplers == std::vector{SamplerKind::Product, SamplerKind::Mis});
-  CHECK(plan.spps == std::vector{4, 16, 64});
-  CHECK(plan_of({"all"}, {"1"}).samplers.size() == renderer::samplers().size());
-  CHECK_THROWS_AS(plan_of({"magic"}, {"1"}), tool::UsageError);
-  CHECK_THROWS_AS(plan_of({"mis,"}, {"1"}), tool::UsageError);
-  CHECK_THROWS_AS(plan_of({"mis"}, {"0"}), tool::UsageError);
-  CHECK_THROWS_AS(plan_of({"mis"}, {"4,"}), tool::UsageError);
+  const auto plan = plan_of({"--samplers", "mis,product", "mis", "--spp", "64", "4,16", "4"});
+  REQUIRE(plan);
+  CHECK(plan->samplers == std::vector{SamplerKind::Product, SamplerKind::Mis});
+  CHECK(plan->spps == std::vector{4, 16, 64});
+  CHECK(plan_of({"--samplers", "all"})->samplers.size() == renderer::samplers().size());
+  CHECK(plan_of({})->spps == std::vector{16, 64, 256});
+  CHECK(plan_of({"--seconds", "0.5,0.25"})->seconds == std::vector{0.25, 0.5});
+  CHECK_FALSE(plan_of({"--samplers", "magic"}));
+  CHECK_FALSE(plan_of({"--samplers", "mis,"}));
+  CHECK_FALSE(plan_of({"--spp", "0"}));
+  CHECK_FALSE(plan_of({"--spp", "4,"}));
 }
 
 TEST_CASE("names are those of the files, and must differ", "[bench]") {

@@ -1,5 +1,5 @@
 // The figures that haarbench reports, on pixels whose truth and noise are known.
-#include <bench/statistics.h>
+#include <bench/results.h>
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // Reports and the words of a command line.
+#include <support/arguments.h>
 #include <support/report.h>
 #include <support/tool.h>
-#include <support/words.h>
 
 #include <catch2/catch.hpp>
 
@@ -54,15 +54,15 @@ TEST_CASE("what is not finite or no UTF-8 still gives JSON", "[support]") {
 }
 
 TEST_CASE("numbers are read strictly", "[support]") {
-  CHECK(tool::integer_of("-12", -20, 5) == -12);
-  CHECK(tool::number_of("1e-3", 0, 1) == 0.001);
-  CHECK(tool::numbers_of("1,0.5,0", 3, 0, 1) == std::vector<double>{1, 0.5, 0});
+  CHECK(tool::parse_integer("-12", -20, 5) == -12);
+  CHECK(tool::parse_number("1e-3", 0, 1) == 0.001);
+  CHECK(tool::parse_numbers("1,0.5,0", 3, 0, 1) == std::vector<double>{1, 0.5, 0});
   for (const char* word : {"", "x", "1x", " 1", "1.5", "99999999999999999999", "6", "+1", "0x1"})
-    CHECK_THROWS_AS(tool::integer_of(word, -20, 5), tool::UsageError);
+    CHECK_THROWS_AS(tool::parse_integer(word, -20, 5), tool::UsageError);
   for (const char* word : {"", "nan", "inf", "-inf", "1e999", "2", "-0.1", "0,5"})
-    CHECK_THROWS_AS(tool::number_of(word, 0, 1), tool::UsageError);
+    CHECK_THROWS_AS(tool::parse_number(word, 0, 1), tool::UsageError);
   for (const char* word : {"", "1,1", "1,1,1,1", "1,,1", "1,1,2", "1,1,"})
-    CHECK_THROWS_AS(tool::numbers_of(word, 3, 0, 1), tool::UsageError);
+    CHECK_THROWS_AS(tool::parse_numbers(word, 3, 0, 1), tool::UsageError);
   CHECK(tool::size_text(1536) == "1.50 KiB");
 }
 

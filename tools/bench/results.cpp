@@ -1,9 +1,12 @@
-#include <bench/statistics.h>
+#include <bench/results.h>
+
+#include <support/report.h>
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace haarlight::bench {
@@ -49,6 +52,24 @@ double variance_of_sum(std::span<const Pixels> runs) {
   for (std::size_t i = 0; i < runs.front().size(); ++i)
     total += pixel_spread(runs, i).variance;
   return total;
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos)
+    return text;
+  std::string result = "\"";
+  for (const char c : text)
+    result.append(c == '"' ? 2 : 1, c);
+  return result.append("\"");
+}
+
+std::string csv_value(const Value& value) {
+  if (const auto* text = std::get_if<std::string>(&value))
+    return quoted(*text);
+  if (const auto* number = std::get_if<std::int64_t>(&value))
+    return std::to_string(*number);
+  const double real = std::get<double>(value);
+  return std::isfinite(real) ? tool::exact_text(real) : std::string();
 }
 
 } // namespace
@@ -111,8 +132,9 @@ double log_slope(std::span<const double> x, std::span<const double> y) {
   return along > 0 ? across / along : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Samples are taken to need at least this share of the time of the longest run.
-constexpr double least_share_of_samples = 0.05;
+/// Samples are assumed to take at least this fraction of the time of the longest run, since the
+/// clock's noise may exceed their cost if preparation is long.
+constexpr double min_sample_fraction = 0.05;
 
 void CostModel::add(int spp, double seconds) {
   const Point point{static_cast<double>(spp), seconds};
@@ -126,8 +148,7 @@ double CostModel::seconds_per_spp() const {
   assert(m_points.size() >= 2);
   const Point& first = m_points.front();
   const Point& last = m_points.back();
-  // Beside a long set-up, the clock's noise may hide what samples cost, or turn it round.
-  return std::max(least_share_of_samples * last.seconds / last.spp,
+  return std::max(min_sample_fraction * last.seconds / last.spp,
                   (last.seconds - first.seconds) / (last.spp - first.spp));
 }
 
@@ -144,6 +165,57 @@ int CostModel::affordable(double seconds, int most) const {
     return most;
   const double spp = low.spp + (seconds - low.seconds) / slope;
   return static_cast<int>(std::clamp(std::floor(spp + 1e-9), 1.0, static_cast<double>(most)));
+}
+
+std::vector<std::pair<std::string, Value>> fields_of(const Row& row) {
+  return {{"brdf", row.brdf},
+          {"probe", row.probe},
+          {"scene", row.scene},
+          {"sampler", row.sampler},
+          {"points", row.points},
+          {"spp", std::int64_t{row.spp}},
+          {"seconds", row.seconds},
+          {"seed_count", std::int64_t{row.seed_count}},
+          {"relmse", row.relmse},
+          {"relvar_per_sample", row.relvar_per_sample},
+          {"mean_ratio", row.mean_ratio},
+          {"mean_ratio_stderr", row.mean_ratio_stderr},
+          {"seconds_per_sample", row.seconds_per_sample},
+          {"setup_seconds", row.setup_seconds},
+          {"mode", row.mode},
+          {"budget_seconds", row.budget_seconds},
+          {"efficiency", row.efficiency},
+          {"slope", row.slope},
+          {"relmse_stderr", row.relmse_stderr},
+          {"reference_relmse", row.reference_relmse},
+          {"seconds_per_point", row.seconds_per_point},
+          {"precompute_seconds", row.precompute_seconds},
+          {"claim", row.claim}};
+}
+
+std::string json_text(const std::vector<Row>& rows) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Row& row : rows) {
+    nlohmann::ordered_json object;
+    for (const auto& [name, value] : fields_of(row))
+      std::visit([&, &key = name](const auto& v) { object[key] = v; }, value);
+    list.push_back(std::move(object));
+  }
+  return list.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+}
+
+std::string csv_text(const std::vector<Row>& rows) {
+  std::string text;
+  for (const auto& [name, value] : fields_of({}))
+    text.append(text.empty() ? "" : ",").append(name);
+  text += '\n';
+  for (const Row& row : rows) {
+    std::string line;
+    for (const auto& [name, value] : fields_of(row))
+      line.append(name == "brdf" ? "" : ",").append(csv_value(value));
+    text.append(line).append("\n");
+  }
+  return text;
 }
 
 } // namespace haarlight::bench

@@ -1,11 +1,11 @@
-#include <support/words.h>
+#include <support/arguments.h>
 
+#include <support/report.h>
 #include <support/tool.h>
 
-#include <array>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 namespace haarlight::tool {
 namespace {
@@ -28,18 +28,18 @@ T parsed(const std::string& word, const char* wanted) {
 
 } // namespace
 
-std::int64_t integer_of(const std::string& word, std::int64_t low, std::int64_t high) {
+std::int64_t parse_integer(const std::string& word, std::int64_t low, std::int64_t high) {
   const auto number = parsed<std::int64_t>(word, "a whole number");
   if (number < low || number > high)
     refuse(word, std::to_string(low), std::to_string(high));
   return number;
 }
 
-std::uint64_t natural_of(const std::string& word) {
+std::uint64_t parse_unsigned(const std::string& word) {
   return parsed<std::uint64_t>(word, "a whole number from 0 up");
 }
 
-double number_of(const std::string& word, double low, double high) {
+double parse_number(const std::string& word, double low, double high) {
   const auto number = parsed<double>(word, "a number");
   if (!std::isfinite(number))
     throw UsageError("'" + word + "' is not a finite number");
@@ -48,14 +48,21 @@ double number_of(const std::string& word, double low, double high) {
   return number;
 }
 
-std::vector<double> numbers_of(const std::string& word, std::size_t count, double low,
-                               double high) {
-  std::vector<double> numbers;
-  for (std::size_t begin = 0; begin <= word.size();) {
-    const std::size_t end = std::min(word.find(',', begin), word.size());
-    numbers.push_back(number_of(word.substr(begin, end - begin), low, high));
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
     begin = end + 1;
   }
+  return words;
+}
+
+std::vector<double> parse_numbers(const std::string& word, std::size_t count, double low,
+                                  double high) {
+  std::vector<double> numbers;
+  for (const std::string& number : split(word))
+    numbers.push_back(parse_number(number, low, high));
   if (numbers.size() != count)
     throw UsageError("'" + word + "' is not " + std::to_string(count) +
                      " numbers separated by commas");
@@ -71,28 +78,15 @@ void check_picture_path(const std::string& path, const std::string& option) {
     throw UsageError(option + ": '" + path + "' ends in neither .png nor .exr");
 }
 
-std::string short_text(double number) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.6g", number);
-  return buffer.data();
-}
-
-std::string exact_text(double number) {
-  std::array<char, 32> buffer{};
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-  return {buffer.data(), result.ptr};
-}
-
-std::string size_text(std::uint64_t bytes) {
-  constexpr std::array<const char*, 5> units = {"B", "KiB", "MiB", "GiB", "TiB"};
-  auto amount = static_cast<double>(bytes);
-  std::size_t unit = 0;
-  for (; amount >= 1024 && unit + 1 < units.size(); ++unit)
-    amount /= 1024;
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), unit == 0 ? "%.0f %s" : "%.2f %s", amount,
-                units[unit]);
-  return buffer.data();
+wavelet::MapPlace chosen_map(const std::vector<double>& given, const wavelet::SetInfo& info,
+                             const std::string& option) {
+  const double column = given[0];
+  const double row = given[1];
+  if (column != std::floor(column) || row != std::floor(row) || column >= info.columns ||
+      row >= info.rows)
+    throw UsageError(option + ": the set has columns 0 to " + std::to_string(info.columns - 1) +
+                     " and rows 0 to " + std::to_string(info.rows - 1));
+  return {static_cast<int>(column), static_cast<int>(row)};
 }
 
 } // namespace haarlight::tool
