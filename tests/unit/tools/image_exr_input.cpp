@@ -16,7 +16,6 @@
 
 using namespace haarlight;
 using namespace haarlight::testing;
-using Image;
 
 namespace {
 

@@ -14,7 +14,6 @@
 
 using namespace haarlight;
 using namespace haarlight::testing;
-using Image;
 
 namespace {
 
