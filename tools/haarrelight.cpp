@@ -10,7 +10,7 @@
 #include <image/contact_sheet.h>
 #include <image/png.h>
 
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <renderer/transfer/transfer.h>
 #include <wavelet/file/packed_set.h>
 

@@ -7,7 +7,7 @@
 
 #include <renderer/film/render.h>
 #include <renderer/path/path.h>
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <renderer/visibility/product_integral.h>
 #include <wavelet/base/out_of_memory.h>
 #include <wavelet/file/output_file.h>
@@ -183,7 +183,7 @@ void require_writable(const std::string& path) { const OutputFile trial(path); }
 
 /// Refuses contradictory options and unwritable outputs before any work is done.
 void check(const tool::Tool& app, Options& options) {
-  if (const auto problem = problem_of(options.render.sampler, options.render.estimator))
+  if (const auto problem = validate(options.render.sampler, options.render.estimator))
     throw tool::UsageError(*problem);
   check_integrator(app, options.integrator, options.render);
   if (options.seed > 0xFFFFFFFFU)

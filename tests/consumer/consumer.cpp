@@ -1,7 +1,7 @@
 // One call into each installed library.
 #include <brdf/analytic.h>
 #include <probe/mapping.h>
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
 #include <wavelet/square/sphere_map.h>
 

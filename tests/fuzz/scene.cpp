@@ -1,7 +1,7 @@
 // Scene files: the JSON alone, the files it names are not opened.
 #include "fuzz_target.h"
 
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 
 using namespace haarlight;
 

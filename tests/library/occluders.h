@@ -33,11 +33,11 @@ inline const Light& turned_light() {
 struct Pair {
   std::string name;
   Shape shape;
-  Transform transform = {};
+  AffineMap transform = {};
 };
 
 inline std::vector<Pair> pairs() {
-  Transform squashed = scaling({1, 0.3, 0.6}).then(euler_rotation({20, 30, 40}));
+  AffineMap squashed = scaling({1, 0.3, 0.6}).then(euler_rotation({20, 30, 40}));
   squashed.offset = {-1, 1, 0.5};
   return {{"sphere", Sphere{Vec3(0.6F, 0.7F, -0.4F), 0.5F}},
           {"far sphere", Sphere{Vec3(20, 30, -10), 1}},

@@ -1,7 +1,7 @@
 #pragma once
 // Scene files of tests, and what is said about them.
 
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
 
 #include <catch2/catch.hpp>

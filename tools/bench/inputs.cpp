@@ -8,7 +8,7 @@
 #include <brdf/merl_file.h>
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
 #include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>
@@ -84,7 +84,7 @@ void add(const Shape& shape, SceneDescription& scene) {
 
 SceneDescription one_sphere() {
   SceneDescription scene;
-  scene.camera.projection = Projection::Orthographic;
+  scene.camera.projection = CameraProjection::Orthographic;
   scene.camera.from = Vec3(0, 0, 6);
   scene.camera.height = 2;
   add(Sphere(), scene);

@@ -248,7 +248,7 @@ private:
     m_sampler.probe = m_result.probe;
     m_sampler.scene = m_result.scene;
     m_sampler.sampler = sampler_name(kind);
-    m_sampler.claim = traits(kind).claim == SamplerClaim::Biased ? "biased" : "unbiased";
+    m_sampler.claim = traits(kind).bias == Bias::Biased ? "biased" : "unbiased";
     m_sampler.setup_seconds = session.setup_seconds();
     m_sampler.precompute_seconds = scene.precompute_seconds;
     for (const Points points : m_plan.points)

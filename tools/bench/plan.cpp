@@ -17,7 +17,7 @@ void declare_measurement(tool::Tool& app, Plan& plan) {
   std::vector<std::pair<std::string, SamplerKind>> references;
   for (const SamplerTraits& sampler : samplers()) {
     all.emplace_back(sampler.name, sampler.kind);
-    if (sampler.claim == SamplerClaim::Unbiased && (sampler.needs & NeedsTables) == 0)
+    if (sampler.bias == Bias::Unbiased && (sampler.needs & NeedsTables) == 0)
       references.emplace_back(sampler.name, sampler.kind);
   }
   app.choices(plan.samplers, "--samplers", all,
@@ -124,7 +124,7 @@ void check(Plan& plan) {
         plan.samplers.push_back(sampler.kind);
   plan.samplers = distinct(plan.samplers);
   for (const SamplerKind kind : plan.samplers)
-    if (const auto problem = problem_of(kind, plan.render.estimator))
+    if (const auto problem = validate(kind, plan.render.estimator))
       throw tool::UsageError(*problem);
   sort_unique(plan.spps);
   sort_unique(plan.seconds);

@@ -6,7 +6,7 @@
 
 #include <image/image_exr.h>
 
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
 #include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>

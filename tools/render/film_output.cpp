@@ -127,7 +127,7 @@ void set_film_size(const std::string& text, SceneDescription& scene) {
   const auto second = std::from_chars(crossed ? first.ptr + 1 : end, end, height);
   if (second.ec != std::errc() || second.ptr != end)
     throw UsageError("--size: '" + text + "' is not of the form WIDTHxHEIGHT, as in 640x480");
-  const std::string problem = film_size_problem(width, height);
+  const std::string problem = validate_film_size(width, height);
   if (!problem.empty())
     throw UsageError("--size: " + problem);
   scene.width = static_cast<int>(width);

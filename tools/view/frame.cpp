@@ -16,7 +16,7 @@ std::vector<float> list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// A ray's direction, long enough to be linear in the film's coordinates.
 Vec3 towards(const Ray& ray, const CameraDescription& camera) {
-  if (camera.projection == Projection::Orthographic)
+  if (camera.projection == CameraProjection::Orthographic)
     return ray.direction;
   return ray.direction / ray.direction.dot((camera.to - camera.from).normalized());
 }

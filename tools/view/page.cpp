@@ -34,7 +34,7 @@ Json json_of(const PackedTexture& texture) {
 Json list(const float* values, int count) { return std::vector<float>(values, values + count); }
 
 Json json_of(const renderer::CameraDescription& camera) {
-  const bool parallel = camera.projection == renderer::Projection::Orthographic;
+  const bool parallel = camera.projection == renderer::CameraProjection::Orthographic;
   return {{"projection", parallel ? "orthographic" : "perspective"},
           {"from", list(camera.from.data(), 3)},
           {"to", list(camera.to.data(), 3)},

@@ -78,7 +78,7 @@ void draw_frame(const tool::RelightInput& input, const Options& options, tool::R
       pack_transfer(transfer.trees(), points, transfer.width(), transfer.height()),
       transfer.width(), transfer.height());
   const double ms_per_turn =
-      turn(light, turn_of(change_of(options).rotate), options.repeat, drawer);
+      turn(light, rotation_of(change_of(options).rotate), options.repeat, drawer);
   const int finest = finest_level(transfer);
   const int level = options.level.value_or(finest);
   const Drawing drawing = {[&](int l) { return drawer.draw(l); }, [&] { return drawer.read(); },

@@ -4,7 +4,6 @@
 #include <view/packed_scene.h>
 
 #include <renderer/transfer/relight.h>
-#include <renderer/transfer/turned_light.h>
 
 #include <vector>
 
@@ -28,7 +27,7 @@ private:
   int m_height;
   bool m_shown;
   renderer::Light m_light;
-  renderer::TurnedLight m_map;
+  renderer::RotatedLight m_map;
   const std::vector<renderer::FilmPoint>& m_points;
 };
 

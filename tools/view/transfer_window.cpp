@@ -104,7 +104,8 @@ private:
     const auto begin = std::chrono::steady_clock::now();
     const auto& [yaw, pitch, roll] = m_look.rotate;
     if (m_times.empty() || m_look.rotate != m_drawn.rotate)
-      m_drawer.set_light(m_light.turned(turn_of(Eigen::Vector3f(yaw, pitch, roll).cast<double>())));
+      m_drawer.set_light(
+          m_light.turned(rotation_of(Eigen::Vector3f(yaw, pitch, roll).cast<double>())));
     m_drawer.draw(m_look.level);
     const auto passed = std::chrono::steady_clock::now() - begin;
     m_times.push_back(std::chrono::duration<double, std::milli>(passed).count());

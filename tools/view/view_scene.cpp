@@ -1,6 +1,6 @@
 #include <view/view_scene.h>
 
-#include <renderer/scene/scene_file.h>
+#include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
 #include <wavelet/file/input_file.h>
 
@@ -38,7 +38,7 @@ TreeTable trees_of(const MaterialDescription& material) {
     return TreeTable(*analytic_reflectance(*material.model)->maps());
   if (!material.brdf.empty())
     return TreeTable(*measured_reflectance(brdf::MeasuredBrdf(material.brdf))->maps());
-  return TreeTable(LambertMaps(material.lambert.value_or(Rgb::Zero())));
+  return TreeTable(*lambert_reflectance(material.lambert.value_or(Rgb::Zero()))->maps());
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #pragma once
 // What a viewer shows: spheres and planes, their trees and one lamp. No GL here.
 
-#include <renderer/material/reflectance.h>
+#include <renderer/material/material.h>
 #include <renderer/scene/camera.h>
 #include <renderer/scene/scene.h>
 #include <renderer/shapes/shapes.h>

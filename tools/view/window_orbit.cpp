@@ -37,7 +37,7 @@ CameraDescription Orbit::camera() const {
   const Eigen::Vector3d direction =
       std::cos(above) * (std::cos(right) * ahead + std::sin(right) * across) + std::sin(above) * up;
   CameraDescription camera = m_start;
-  const bool parallel = camera.projection == renderer::Projection::Orthographic;
+  const bool parallel = camera.projection == renderer::CameraProjection::Orthographic;
   camera.height *= parallel ? m_scale : 1;
   const double distance = m_distance * (parallel ? 1 : m_scale);
   camera.from = m_start.to + (distance * direction).cast<float>();

@@ -18,7 +18,7 @@ float moved(float angle, double pixels) {
 }
 
 /// About the world's axes, as LightDescription::rotate turns a probe.
-Eigen::Matrix3f turn_of(const Settings& settings) {
+Eigen::Matrix3f rotation_of(const Settings& settings) {
   constexpr float degree = std::numbers::pi_v<float> / 180;
   const Eigen::AngleAxisf turn(settings.light_turn * degree, Vec3::UnitY());
   const Eigen::AngleAxisf tilt(settings.light_tilt * degree, Vec3::UnitX());
@@ -54,7 +54,7 @@ void steer(const Gestures& gestures, const CameraDescription& start, Orbit& orbi
 Look look_of(const Settings& settings, const Orbit& orbit, const Lamp& lamp, bool hurried) {
   Look look;
   look.camera = orbit.camera();
-  look.to_world = turn_of(settings);
+  look.to_world = rotation_of(settings);
   look.lamp = lamp;
   look.lamp.place = look.to_world * lamp.place;
   look.tolerance = std::max(settings.tolerance, hurried ? hurried_tolerance : 0);

@@ -1,6 +1,7 @@
 #include "film/film_rendering.h"
 
 #include <renderer/scene/camera.h>
+
 #include <wavelet/base/parallel.h>
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr int tile_side = 16;
 
-/// What this thread has computed so far; other programs on the machine do not count.
+/// CPU time of this thread.
 double thread_cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -24,13 +25,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What one tile cost.
+/// Cost of a tile.
 struct TileCost {
   ShadingCost shading;
   double seconds = 0;
 };
 
-/// Renders tiles of one pass; one for each thread at a time.
+/// Renders tiles of one pass; one per thread.
 class TileRenderer {
 public:
   TileRenderer(const LoadedScene& scene, const Camera& camera, std::unique_ptr<PixelShader> shader,
@@ -39,10 +40,10 @@ public:
 
   TileCost render(int x0, int y0, const Pass& pass) {
     const double start = thread_cpu_seconds();
-    m_shader->forget();
+    m_shader->reset();
     const int width = std::min(tile_side, m_film.width - x0);
     for (int y = y0; y < std::min(y0 + tile_side, m_film.height); ++y)
-      for (int i = 0; i < width; ++i) // to and fro: each pixel beside the last
+      for (int i = 0; i < width; ++i) // serpentine order: each pixel is beside the previous one
         pixel((y - y0) % 2 == 0 ? x0 + i : x0 + width - 1 - i, y, pass);
     return {m_shader->take_cost(), thread_cpu_seconds() - start};
   }
@@ -72,7 +73,7 @@ private:
   std::unique_ptr<PixelShader> m_shader;
 };
 
-/// One rendering from first pass to finished film.
+/// A rendering, from the first pass to the finished film.
 class Rendering {
 public:
   Rendering(const LoadedScene& scene, const RenderOptions& options, const MakeShader& make,
@@ -130,7 +131,7 @@ private:
     }
   }
 
-  /// Passes double in size while the time allows; without a limit there is one.
+  /// Passes double in size up to the time limit; without a limit there is one pass.
   Pass next_pass(const Pass& last, double pass_seconds, double elapsed) const {
     const std::uint32_t total = last.first + last.count;
     const double left = m_options.time_limit - elapsed;

@@ -1,6 +1,6 @@
 #pragma once
-// What all ways to render share: one ray through each pixel's centre, tiles, threads, and passes
-// until the time is up. What is done where a ray hits is a PixelShader's business.
+// The framework of all integrators: one ray through each pixel's centre, tiles, threads, and passes
+// up to the time limit. A PixelShader computes the light reflected at a hit.
 
 #include "film/pixel_sums.h"
 
@@ -11,48 +11,48 @@
 
 namespace haarlight::renderer {
 
-/// A run of samples for every pixel.
+/// A range of samples of every pixel.
 struct Pass {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
 };
 
-/// What shading costs besides time; grows until taken.
+/// Accumulated cost of shading.
 struct ShadingCost {
   double prepare_seconds = 0;
   std::uint64_t points = 0;
   std::uint64_t leaves = 0;
 };
 
-/// What a pixel sees.
+/// The hit of a pixel's ray.
 struct PixelHit {
   Hit hit; ///< its normal on the viewer's side
   Vec3 wo; ///< unit direction to the viewer, world
   std::uint32_t pixel = 0;
 };
 
-/// Shades pixels, one after another; each thread has its own.
+/// Shades pixels; one per thread.
 class PixelShader {
 public:
   virtual ~PixelShader() = default;
 
-  /// Forgets the pixels before: what comes depends on the pixels to come alone.
-  virtual void forget() = 0;
+  /// Clears cached state.
+  virtual void reset() = 0;
 
   /// Adds a pass's samples of reflected light to the pixel's sums.
   virtual void shade(const PixelHit& seen, const Pass& pass, PixelSums& sums) = 0;
 
-  /// The cost since last asked.
+  /// The cost since the last call.
   ShadingCost take_cost() { return std::exchange(m_cost, {}); }
 
 protected:
   ShadingCost m_cost;
 };
 
-/// Makes a thread's own; called from any thread.
+/// Creates a thread's shader; called from any thread.
 using MakeShader = std::function<std::unique_ptr<PixelShader>()>;
 
-/// Renders the film. Its bytes depend on scene, options and shader alone, unless there is a time
+/// Renders the film. Its bytes depend only on scene, options and shader, unless there is a time
 /// limit.
 RenderResult render_film(const LoadedScene& scene, const RenderOptions& options,
                          const MakeShader& make, int width, int height,

@@ -28,8 +28,8 @@ void PixelSums::add_variance(const SumVariance& of_pass, std::uint32_t samples) 
 
 namespace {
 
-/// Of eq. 9 in the paper. Directions below the horizon say nothing of occlusion; where there are no
-/// others, none is assumed, and likewise by the ratio estimator where no sample has a weight.
+/// Of the paper's eq. 9: of the directions above the horizon; 1 if there are none, as in the ratio
+/// estimator if no sample has a weight.
 float visible_fraction(const PixelSums& sums) {
   return sums.directions > 0
              ? static_cast<float>(sums.visible) / static_cast<float>(sums.directions)
@@ -51,8 +51,8 @@ Rgb estimate_reflected(const PixelSums& sums, Estimator estimator) {
   return Rgb::Zero();
 }
 
-/// Of the samples that one technique drew, luminances: independent and identically distributed if
-/// points are random.
+/// Sums over one technique's samples (luminance), which are independent and identically distributed
+/// if points are random.
 struct TechniqueSums {
   std::uint32_t count = 0;
   double shadowed = 0;        ///< Σ w v
@@ -89,7 +89,7 @@ struct PairSample {
   double visible = 0;                              ///< v
   double balance_value = 0;                        ///< f / (mean density), luminance
   std::array<double, random_techniques> balance;   ///< weights b_t of the balance heuristic
-  std::array<double, random_techniques> heuristic; ///< weights w_t by which samples count
+  std::array<double, random_techniques> heuristic; ///< weights w_t of the sampler's heuristic
 };
 
 PairSample pair_sample(const Contribution& c) {
@@ -104,11 +104,11 @@ PairSample pair_sample(const Contribution& c) {
   return s;
 }
 
-/// The same from pairs of samples, which serves where a technique drew a single one.
+/// The estimate from pairs of samples, for techniques with a single sample.
 ///
 /// n_t samples of technique t, of density p_t, have the variance Σ w² − Σ_t n_t m_t² in
 /// expectation, m_t being the mean of w over p_t. The latter sum is an integral over pairs of
-/// directions, for which every ordered pair of different samples is a sample: with N p̄ = Σ_t n_t
+/// directions, of which every ordered pair of different samples is a sample: with N p̄ = Σ_t n_t
 /// p_t and the balance heuristic's weights b_t = n_t p_t / (N p̄) their density is N² p̄(x) p̄(y) (1 −
 /// c), c = Σ_t b_t(x) b_t(y) / n_t, and the integrand is N² f(x) f(y) Σ_t w_t(x) w_t(y) / n_t.
 SumVariance variance_from_pairs(std::span<const Contribution> samples,

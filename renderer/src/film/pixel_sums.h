@@ -7,25 +7,24 @@
 
 namespace haarlight::renderer {
 
-/// What a sample contributes, as its variance is estimated from.
+/// A sample's contribution, for estimates of the variance.
 struct Contribution {
-  double luminance = 0; ///< of w = f_r L cos / p, its unshadowed contribution
+  double luminance = 0; ///< of w = f_r L cos / p, the unshadowed contribution
   bool visible = false;
   Technique technique = Technique::First;
   FirstWeights first = {};
 };
 
-/// Variances of Σ w v and Σ w over the samples of a pass, which are independent of each other, from
-/// these samples alone: unbiased for random points, whatever the numbers of samples, if there are
-/// two at least. Where a technique drew a single sample an estimate may be negative. Directions
-/// that are the same for every seed have no variance.
+/// Estimates the variances of Σ w v and Σ w over the independent samples of a pass: unbiased for
+/// random points and at least two samples. If a technique drew a single sample, the estimate may be
+/// negative. Directions that are the same for every seed have no variance.
 SumVariance variance_of_sums(std::span<const Contribution> samples);
 
 /// w = f_r L cos / p is a sample's unshadowed contribution, v ∈ {0, 1} its visibility.
 struct PixelSums {
   Rgb shadowed = Rgb::Zero();       ///< Σ w v
   Rgb unshadowed = Rgb::Zero();     ///< Σ w
-  Rgb emitted = Rgb::Zero();        ///< by the visible surface; adds to every estimate
+  Rgb emitted = Rgb::Zero();        ///< by the visible surface; added to every estimate
   Rgb product = Rgb::Zero();        ///< L_ns of the product, as of the last pass
   SumVariance variance;             ///< of Σ w v and Σ w over the passes of two or more samples
   std::uint32_t variance_count = 0; ///< samples of these passes
@@ -36,10 +35,10 @@ struct PixelSums {
 
   void add(const Rgb& weight, bool v, float p);
 
-  /// For the bidirectional estimator: a direction above the horizon.
+  /// Adds a direction above the horizon, for the bidirectional estimator.
   void add_direction(bool v);
 
-  /// Adds the variance of a pass's sums. A pass of one sample says nothing of its variance.
+  /// Adds the variance of a pass's sums. Passes of one sample are ignored.
   /// @param samples of the pass
   void add_variance(const SumVariance& of_pass, std::uint32_t samples);
 };
@@ -47,9 +46,9 @@ struct PixelSums {
 /// A pixel's radiance.
 Rgb estimate(const PixelSums& sums, Estimator estimator);
 
-/// Estimated variance of its luminance. Passes of a single sample are taken to vary as the others
-/// do; 0 if there are no others. Unbiased for the unbiased estimator and random points, and so
-/// negative at times where a technique drew a single sample.
+/// Estimated variance of its luminance. Passes of a single sample are assumed to vary like the
+/// others; 0 if there are no others. Unbiased for the unbiased estimator and random points; may be
+/// negative if a technique drew a single sample.
 double estimate_variance(const PixelSums& sums, Estimator estimator);
 
 } // namespace haarlight::renderer

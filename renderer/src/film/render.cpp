@@ -13,14 +13,14 @@ constexpr std::array<std::pair<const char*, Estimator>, 3> estimator_names = {
      {"bidirectional", Estimator::Bidirectional},
      {"ratio", Estimator::Ratio}}};
 
-/// Light that comes straight from afar.
+/// Direct light.
 class DirectShader : public PixelShader {
 public:
   DirectShader(const LoadedScene& scene, const RenderOptions& options,
                const RenderFactories& factories)
       : m_estimator(options.estimator), m_light(scene, options, factories) {}
 
-  void forget() override { m_light.forget(); }
+  void reset() override { m_light.reset(); }
 
   void shade(const PixelHit& seen, const Pass& pass, PixelSums& sums) override {
     m_light.prepare(seen, m_cost);
@@ -56,7 +56,7 @@ SamplerOptions sampling_of(const RenderOptions& options) {
   result.count = static_cast<std::size_t>(options.spp);
   if (!needs_unshadowed(options.estimator))
     return result;
-  result.product.drift_bound = 0; // each point has to have its own
+  result.product.drift_bound = 0; // each point needs its own product
   if (result.product.variance_bound == 0)
     result.product.variance_bound = integral_variance_bound;
   return result;
@@ -75,7 +75,7 @@ std::string estimator_name(Estimator estimator) {
   return estimator_names[static_cast<std::size_t>(estimator)].first;
 }
 
-std::optional<std::string> problem_of(SamplerKind sampler, Estimator estimator) {
+std::optional<std::string> validate(SamplerKind sampler, Estimator estimator) {
   if (estimator == Estimator::Bidirectional && !traits(sampler).follows_product)
     return "the bidirectional estimator needs directions that follow the product: --sampler "
            "product or "

@@ -24,19 +24,19 @@ Light::Light(const LightDescription& description, probe::Lookup lookup) {
     m_map.emplace(description.haar, wavelet::SetKind::Light);
     if (!m_map->info().world_frame)
       throw_input_error(description.haar,
-                        "holds rotated maps, which belong under \"table\"; \"haar\" wants "
-                        "the one world-frame map of --orientations 1");
+                        "holds rotated maps, which belong under the key \"table\"; \"haar\" needs "
+                        "the world-frame map of --orientations 1");
   }
   if (!description.table.empty()) {
     m_rotated.emplace(description.table, wavelet::SetKind::Light, wavelet::Check::WhenUsed);
     if (m_rotated->info().world_frame)
       throw_input_error(description.table,
-                        "holds the one world-frame map, which belongs under \"haar\"; "
-                        "\"table\" wants rotated maps, --orientations above 1");
+                        "holds the world-frame map, which belongs under the key \"haar\"; "
+                        "\"table\" needs rotated maps, --orientations above 1");
   }
   if (!m_probe && !m_map)
     throw_input_error(description.table,
-                      "is all that the light names; it needs \"probe\" or \"haar\" as well");
+                      "is the only file of the light; it needs \"probe\" or \"haar\", too");
 }
 
 void Light::place(double degrees) {
@@ -63,12 +63,12 @@ void Light::radiance(std::span<const Vec3> directions, std::span<Rgb> out) const
     out[i] = radiance(directions[i]);
 }
 
-void Light::need_tree() {
+void Light::require_tree() {
   if (!m_map)
     m_map.emplace(probe::ProbeMaps(*m_probe, probe::MapOptions{}, m_source));
 }
 
-void Light::need_distribution() {
+void Light::require_distribution() {
   if (m_probe && !m_distribution)
     m_distribution.emplace(*m_probe);
 }

@@ -18,10 +18,10 @@ LightSamples::LightSamples(const LoadedScene& scene, const RenderOptions& option
       m_integrator(factories.integrator ? factories.integrator->make(samples_of(options))
                                         : nullptr) {}
 
-void LightSamples::forget() {
-  m_sampler->forget();
+void LightSamples::reset() {
+  m_sampler->reset();
   if (m_integrator)
-    m_integrator->forget();
+    m_integrator->reset();
 }
 
 void LightSamples::prepare(const PixelHit& seen, ShadingCost& cost) {

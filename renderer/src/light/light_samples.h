@@ -1,5 +1,5 @@
 #pragma once
-// Samples of the distant light at the points that pixels see, by the chosen sampler.
+// Samples of the distant light at the points seen by pixels, by the chosen sampler.
 
 #include "film/film_rendering.h"
 #include "film/pixel_sums.h"
@@ -9,32 +9,31 @@
 
 namespace haarlight::renderer {
 
-/// One thread's. What a sample adds to ∫ f_r L v cos dω is weight(i) where visible(i), divided by
-/// their number.
+/// One per thread. Sample i contributes weight(i), if visible(i), divided by the number of samples,
+/// to ∫ f_r L v cos dω.
 class LightSamples {
 public:
   LightSamples(const LoadedScene& scene, const RenderOptions& options,
                const RenderFactories& factories);
 
-  void forget();
+  void reset();
 
-  /// Turns to a point. `seen` must live until the next call.
+  /// Sets the shading point. `seen` must live until the next call.
   void prepare(const PixelHit& seen, ShadingCost& cost);
 
-  /// L_ns, for estimators that need it.
+  /// L_ns, for estimators that use it.
   std::optional<Rgb> unshadowed() const;
 
   /// Draws a pass's samples for the point.
   void sample(const Pass& pass);
 
-  /// f_r L cos / p; 0 of samples that count nothing.
+  /// f_r L cos / p; 0 for samples without a direction.
   Rgb weight(std::size_t i) const;
 
-  /// Whether light reaches the point from sample i: traces its ray. False where weight() is 0.
+  /// Traces the ray of sample i. False where weight() is 0.
   bool visible(std::size_t i) const;
 
-  /// Whether the direction of sample i is unoccluded, however little it reflects: traces its ray.
-  /// Nothing if it is no direction above the horizon.
+  /// Traces the ray of sample i, whatever its weight; none if its direction is below the horizon.
   std::optional<bool> unoccluded(std::size_t i) const;
 
   float pdf(std::size_t i) const { return m_directions[i].pdf; }
@@ -56,7 +55,7 @@ private:
   const LoadedScene& m_scene;
   const RenderOptions& m_options;
   std::unique_ptr<Sampler> m_sampler;
-  std::unique_ptr<Sampler> m_integrator; ///< of L_ns, where the sampler has none
+  std::unique_ptr<Sampler> m_integrator; ///< computes L_ns, where the sampler does not
   const PixelHit* m_seen = nullptr;
   ShadingPoint m_point;
   std::vector<DirectionSample> m_directions;

@@ -1,6 +1,6 @@
 #include "path/emitters.h"
 
-#include "shapes/shape_placement.h"
+#include "shapes/solid.h"
 
 #include <wavelet/base/sampling.h>
 
@@ -18,12 +18,12 @@ bool can_sample(const Solid& solid) {
          solid.kind == SolidKind::Box;
 }
 
-/// World vector that a canonical axis becomes.
+/// The image of a canonical axis, world.
 Vec3 axis_of(const Emitter& emitter, int axis) {
   return emitter.solid.to_world.linear.col(axis).cast<float>();
 }
 
-/// Two edges of a box's face across an axis, or a disk's two radii; half as long as the face.
+/// Half the edges of a box's face across an axis, or two radii of a disk.
 struct Edges {
   Vec3 first;
   Vec3 second;
@@ -51,7 +51,7 @@ Emitter make_emitter(const Solid& solid, float luminance) {
   return emitter;
 }
 
-/// +1, −1: the face of that side across an axis looks towards the point; 0: neither does.
+/// Per axis: +1 or −1 if the face on that side is visible from the point, 0 if neither is.
 Vec3 sides_towards(const Emitter& emitter, const Vec3& position) {
   const Vec3 local = emitter.solid.to_object.point(position.cast<double>()).cast<float>();
   if (emitter.solid.kind == SolidKind::Disk)
@@ -62,19 +62,19 @@ Vec3 sides_towards(const Emitter& emitter, const Vec3& position) {
   return sides;
 }
 
-/// World area of the faces that look towards the point.
+/// World area of the faces visible from the point.
 float area_towards(const Emitter& emitter, const Vec3& position) {
   return sides_towards(emitter, position).cwiseAbs().dot(emitter.face_areas);
 }
 
-/// 1 − cos of the half angle that the sphere around an emitter fills; 2 from inside.
+/// 1 − cos of the half angle that the bounding sphere subtends; 2 from inside.
 float cap_height(const Emitter& emitter, const Vec3& position) {
   const float distance2 = (emitter.center - position).squaredNorm();
   const float sine2 = emitter.radius * emitter.radius / distance2;
   return sine2 < 1 ? sine2 / (1 + std::sqrt(1 - sine2)) : 2.0F;
 }
 
-/// About the solid angle it fills, over 2π.
+/// Approximate solid angle / 2π.
 float extent(const Emitter& emitter, const Vec3& position) {
   const float height = cap_height(emitter, position);
   if (emitter.solid.kind == SolidKind::WorldSphere)
@@ -84,7 +84,7 @@ float extent(const Emitter& emitter, const Vec3& position) {
   return area > 0 ? std::min(height, area / (2 * pi * distance2)) : 0.0F;
 }
 
-/// What share of samples an emitter gets, but for a factor.
+/// Unnormalised probability of choosing an emitter.
 float importance(const Emitter& emitter, const Hit& from) {
   const bool below = from.normal.dot(emitter.center - from.position) < -emitter.radius;
   if (below || emitter.solid.object == from.object)
@@ -102,7 +102,7 @@ Vec3 cone_direction(const Emitter& emitter, const Vec3& position, const Vec2& u)
   return frame.to_outer({across * cosine, across * sine, 1 - down}).normalized();
 }
 
-/// A point of the faces that look towards `position`, by area. `u` is used up.
+/// A point on the faces visible from `position`, uniform in area.
 Vec3 area_point(const Emitter& emitter, const Vec3& position, Vec2 u) {
   const Vec3 sides = sides_towards(emitter, position);
   const Vec3 areas = sides.cwiseAbs().cwiseProduct(emitter.face_areas);
@@ -160,12 +160,12 @@ std::optional<EmitterDirection> Emitters::sample(const Hit& from, float choice,
   float place = choice * total;
   const Emitter* chosen = nullptr;
   for (const Emitter& emitter : m_emitters) {
-    const float share = importance(emitter, from);
-    if (share > 0)
-      chosen = &emitter; // rounding may leave none after the last
-    if (share > 0 && place < share)
+    const float weight = importance(emitter, from);
+    if (weight > 0)
+      chosen = &emitter; // rounding may leave `place` beyond the last
+    if (weight > 0 && place < weight)
       break;
-    place -= share;
+    place -= weight;
   }
   if (chosen == nullptr)
     return std::nullopt;
@@ -174,17 +174,17 @@ std::optional<EmitterDirection> Emitters::sample(const Hit& from, float choice,
 
 float Emitters::pdf(const Hit& from, const Vec3& direction, const Hit& hit) const {
   float total = 0;
-  float share = 0;
+  float weight = 0;
   const Emitter* found = nullptr;
   for (const Emitter& emitter : m_emitters) {
-    const float one = importance(emitter, from);
-    total += one;
+    const float own = importance(emitter, from);
+    total += own;
     if (emitter.solid.object != hit.object)
       continue;
-    share = one;
+    weight = own;
     found = &emitter;
   }
-  return share > 0 ? share / total * density(*found, from.position, direction, hit) : 0.0F;
+  return weight > 0 ? weight / total * density(*found, from.position, direction, hit) : 0.0F;
 }
 
 } // namespace haarlight::renderer

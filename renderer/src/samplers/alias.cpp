@@ -1,8 +1,8 @@
 // The light alone: pixels of the probe by an alias table (Walker 1974, "New fast method for
-// generating discrete random numbers with arbitrary frequency distributions"; made as by Vose 1991,
-// "A linear algorithm for generating random numbers with a given distribution").
+// generating discrete random numbers with arbitrary frequency distributions"; built as by Vose
+// 1991, "A linear algorithm for generating random numbers with a given distribution").
 
-#include "samplers/kinds.h"
+#include "samplers/sampler_factories.h"
 
 #include <probe/probe.h>
 
@@ -11,11 +11,11 @@ namespace {
 
 using probe::LightDistribution;
 
-/// Draws indices with given probabilities in constant time: each bucket holds its own index and
-/// one other.
+/// Draws indices with given probabilities in constant time: each bucket has its own index and one
+/// alias.
 class AliasTable {
 public:
-  /// @param weights ≥ 0, not all 0; used up
+  /// @param weights ≥ 0, not all 0
   explicit AliasTable(std::vector<double> weights) : m_buckets(weights.size()) {
     normalise(weights);
     std::vector<std::uint32_t> small;
@@ -33,7 +33,7 @@ public:
         small.push_back(rich);
       }
     }
-    // What rounding has left over fills its bucket, unless it is nothing.
+    // Remaining buckets are full up to rounding.
     for (const std::uint32_t index : large)
       m_buckets[index] = {1, index};
     for (const std::uint32_t index : small)
@@ -55,7 +55,7 @@ private:
     std::uint32_t other = 0;
   };
 
-  /// Makes the weights' mean 1.
+  /// Scales the weights to mean 1.
   static void normalise(std::vector<double>& weights) {
     double sum = 0;
     for (const double weight : weights)
@@ -67,7 +67,7 @@ private:
   std::vector<Bucket> m_buckets;
 };
 
-/// The pixels that a light is drawn from.
+/// The alias table of a light's pixels; shared by threads.
 class PixelTable {
 public:
   explicit PixelTable(std::shared_ptr<const LightDistribution> light)
@@ -130,19 +130,11 @@ private:
   std::vector<probe::LightSample> m_samples;
 };
 
-/// A light that is a tree alone, as a probe of the tree's pixels.
-LightDistribution distribution_of_tree(const Light& light) {
-  const wavelet::Map map = light.map(1 << light.tree().levels);
-  Image image(map.size, map.size);
-  image.rgb = map.rgb;
-  return LightDistribution(probe::Probe(image, probe::Mapping::Octahedral));
-}
-
-/// The probe's distribution, or that of a light which is a tree alone.
+/// The probe's distribution, or the tree's if there is no probe.
 std::shared_ptr<const LightDistribution> distribution_of(const Light& light) {
   if (const LightDistribution* owned_by_light = light.distribution())
     return {std::shared_ptr<const void>(), owned_by_light};
-  return std::make_shared<LightDistribution>(distribution_of_tree(light));
+  return std::make_shared<LightDistribution>(tree_as_probe(light));
 }
 
 } // namespace

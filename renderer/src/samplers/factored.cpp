@@ -1,6 +1,6 @@
 // The reflectance alone, factorised: Lawrence, Rusinkiewicz and Ramamoorthi 2004.
 
-#include "samplers/kinds.h"
+#include "samplers/sampler_factories.h"
 
 #include <brdf/factored_brdf.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 using brdf::FactoredBrdf;
 
-/// Factors of what a material truly is, whatever it was given as.
+/// Factorises a material's reflectance, whatever its representation.
 FactoredBrdf factors_of(const Material& material) {
   return FactoredBrdf([&](const Vec3& wo, std::span<const Vec3> directions, std::span<float> out) {
     std::vector<Rgb> values(directions.size());
@@ -29,7 +29,7 @@ Frame frame_of(const ShadingPoint& point) {
   return {t, point.n.cross(t), point.n};
 }
 
-/// By material; samplers may outlive their factory.
+/// By material; shared, since samplers may outlive their factory.
 using SharedFactors = std::shared_ptr<const std::vector<FactoredBrdf>>;
 
 class FactoredSampler : public Sampler {

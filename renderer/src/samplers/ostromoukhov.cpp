@@ -1,13 +1,13 @@
-// Lamps on a Penrose tiling (Ostromoukhov, Donohue and Jodoin 2004, "Fast Hierarchical Importance
-// Sampling with Blue Noise Properties"), laid over the equal-area square.
+// Representative lights on a Penrose tiling (Ostromoukhov, Donohue and Jodoin 2004, "Fast
+// Hierarchical Importance Sampling with Blue Noise Properties") of the equal-area square.
 //
-// Triangles of four kinds split into triangles of the same kinds, smaller by the golden ratio φ,
-// and points. Each point has a number, written in Fibonacci numbers (the F-code), that the splits
-// on the way to it add up to; where n points are wanted per unit of the tiling's area, those
-// numbered below n are taken, which are spread evenly whatever n is.
+// Triangles of four kinds are subdivided into triangles of the same kinds, smaller by the golden
+// ratio φ, and sample points. Each point has a number in Fibonacci digits (the F-code), accumulated
+// over the subdivisions. For n points per unit area of the tiling, the points numbered below n are
+// taken; they are evenly distributed for any n.
 
-#include "samplers/kinds.h"
-#include "samplers/lamps.h"
+#include "samplers/representative_lights.h"
+#include "samplers/sampler_factories.h"
 
 #include <wavelet/square/sphere_map.h>
 
@@ -38,12 +38,12 @@ enum class Tile : std::uint8_t { Slim, SlimMirrored, Broad, BroadMirrored, Sampl
 /// Leading digits of an F-code.
 enum class Digits : std::uint8_t { Zero, Low, High };
 
-/// A tile's part: where it starts, which way it points and which digits it adds.
+/// A part of a tile: its position, direction and digits.
 struct Part {
   Tile tile;
-  int anchor; ///< −1 = the split tile, else an earlier part of it
+  int anchor; ///< −1 = the subdivided tile, else an earlier part of it
   int corner; ///< of the anchor
-  int turn;   ///< against the split tile, in twentieths
+  int turn;   ///< relative to the subdivided tile, in twentieths
   Digits digits;
 };
 
@@ -67,12 +67,12 @@ constexpr std::array<std::span<const Part>, 4> parts_of = {slim_parts, slim_mirr
 
 constexpr double golden = 1.6180339887498949;
 
-/// A tile somewhere.
+/// A tile with its position.
 struct Placed {
   Tile tile = Tile::BroadMirrored;
   int direction = 15; ///< of its first side, in twentieths of a turn; 15 = +x
   int level = 0;
-  double number = 0; ///< what the digits so far stand for
+  double number = 0; ///< value of the digits so far
   double scale = 1;
   std::array<Point, 3> corners;
 
@@ -84,7 +84,7 @@ struct Placed {
   }
 };
 
-/// The k-th Fibonacci number; F₁ = F₂ = 1. Doubles hold as many as positions can be told apart.
+/// The k-th Fibonacci number; F₁ = F₂ = 1.
 double fibonacci(int k) {
   double low = 0;
   double high = 1;
@@ -100,7 +100,7 @@ double value_of(Digits digits, int level) {
   return digits == Digits::Zero ? 0 : fibonacci(2 * level + (digits == Digits::High ? 1 : 0));
 }
 
-/// The greatest luminance of a map's pixels in rectangles.
+/// A pyramid of the maximum luminance of a map's pixels.
 class Maxima {
 public:
   explicit Maxima(const LightPixels& pixels) : m_levels{pixels.luminance} {
@@ -112,7 +112,7 @@ public:
   /// At a point of the square.
   float at(const Point& p) const { return m_levels[0][index(0, cell(0, p.x()), cell(0, p.y()))]; }
 
-  /// At least that of a rectangle, clipped to the square; 0 if they do not meet.
+  /// An upper bound for a rectangle, clipped to the square; 0 if it lies outside.
   float within(const Point& low, const Point& high) const {
     if (low.x() >= 1 || low.y() >= 1 || high.x() < 0 || high.y() < 0)
       return 0;
@@ -152,20 +152,20 @@ private:
   std::vector<std::vector<float>> m_levels;
 };
 
-/// Goes through the points in the order in which a growing demand takes them: a point when
-/// its luminance times the demand reaches its number, a triangle when it reaches the least that a
-/// point in it may have.
+/// Enumerates the points in the order in which an increasing density includes them: a point once
+/// its luminance times the density reaches its number, a triangle once that reaches the least
+/// number of its points.
 class Tiling {
 public:
   explicit Tiling(const LightPixels& pixels) : m_maxima(pixels) {
     Placed root;
     root.scale = 2;
-    // Here the square lies well inside.
+    // The tile contains the square.
     root.set_corners(Point(0.5 - golden * golden, -0.25));
     push(root);
   }
 
-  /// The next point; nothing if all is black.
+  /// The next point; none if the light is black.
   std::optional<Point> next() {
     while (!m_queue.empty()) {
       const Placed tile = m_queue.top().tile;
@@ -180,7 +180,7 @@ public:
 private:
   struct Entry {
     double demand = 0;
-    std::uint64_t turn = 0; ///< settles ties
+    std::uint64_t turn = 0; ///< breaks ties
     Placed tile;
 
     bool operator<(const Entry& other) const {
@@ -210,13 +210,13 @@ private:
     const double luminance = static_cast<double>(luminance_of(tile));
     if (!(luminance > 0))
       return;
-    // The next level's points have one digit at least besides those of the triangle.
+    // Points of the next level have at least one digit more than the triangle.
     const double number =
         tile.tile == Tile::Sample ? tile.number : tile.number + fibonacci(2 * (tile.level + 1));
     m_queue.push({number / luminance, m_turn++, tile});
   }
 
-  /// Of a point, or the greatest in a triangle.
+  /// Of a point, or the maximum in a triangle.
   float luminance_of(const Placed& tile) const {
     const auto& [a, b, c] = tile.corners;
     if (tile.tile == Tile::Sample)
@@ -235,30 +235,30 @@ std::size_t pixel_at(const LightPixels& pixels, const Point& p) {
   return y * static_cast<std::size_t>(pixels.size) + x;
 }
 
-/// As many points as asked for, each for the solid angle that its density leaves it.
-std::vector<Lamp> lamps_of_tiling(const LightPixels& pixels, std::size_t count) {
+/// `count` points, each with the reciprocal of its density as solid angle.
+std::vector<RepresentativeLight> lights_of_tiling(const LightPixels& pixels, std::size_t count) {
   double energy = 0;
   for (const float y : pixels.luminance)
     energy += static_cast<double>(y) * static_cast<double>(pixels.solid_angle);
   const double share = energy / static_cast<double>(count);
   Tiling tiling(pixels);
-  std::vector<Lamp> lamps;
-  while (lamps.size() < count) {
+  std::vector<RepresentativeLight> lights;
+  while (lights.size() < count) {
     const std::optional<Point> p = tiling.next();
     if (!p)
       break;
     const std::size_t i = pixel_at(pixels, *p);
-    lamps.push_back({wavelet::square_to_sphere(Vec2(p->cast<float>())), pixels.radiance[i],
-                     static_cast<float>(share / static_cast<double>(pixels.luminance[i]))});
+    lights.push_back({wavelet::square_to_sphere(Vec2(p->cast<float>())), pixels.radiance[i],
+                      static_cast<float>(share / static_cast<double>(pixels.luminance[i]))});
   }
-  return lamps;
+  return lights;
 }
 
 } // namespace
 
 std::unique_ptr<SamplerFactory> make_ostromoukhov_factory(const LoadedScene& scene,
                                                           const SamplerOptions& options) {
-  return lamp_factory(scene.light(), lamps_of_tiling, options);
+  return representative_light_factory(scene.light(), lights_of_tiling, options);
 }
 
 } // namespace haarlight::renderer

@@ -1,10 +1,10 @@
-// Practical product importance sampling, after Clarberg and Akenine-Möller 2008: a quadtree of the
-// reflectance is made at each point from a few values of the reflectance itself, where importance
-// sampling of it finds it large, and multiplied with the light's averages over the same squares.
+// Practical product importance sampling, after Clarberg and Akenine-Möller 2008: at each point a
+// quadtree of the reflectance is built from values in directions sampled from the reflectance, and
+// multiplied by the light's averages over the same squares.
 
-#include "samplers/kinds.h"
-#include "samplers/lobe_sampling.h"
+#include "samplers/basic_samplers.h"
 #include "samplers/quadrant_tree.h"
+#include "samplers/sampler_factories.h"
 
 #include <wavelet/square/sphere_map.h>
 
@@ -14,15 +14,15 @@
 namespace haarlight::renderer {
 namespace {
 
-/// The reflectance counts as at least this share of its mean, so that no direction is out of reach.
+/// Floor of the reflectance relative to its mean, so that every direction has a density.
 constexpr float reflectance_floor = 0.005F;
 
-/// No square of level l reaches further than this times 2^-l radians from its centre.
+/// Bound on the radius of squares: this times 2^-level radians.
 constexpr float square_radius = 4.4F;
 
 constexpr std::uint32_t point_set = 0x50505333U;
 
-/// A direction that the reflectance is known in, as a point of the light's square.
+/// A direction with a value of the reflectance, as a point of the light's square.
 struct Splat {
   std::uint32_t code = 0; ///< Morton, 16 bits of x and of y
   Float4 value = {};      ///< f_r cos, lanes R, G, B, 0
@@ -45,8 +45,8 @@ std::uint32_t morton_code(const Vec2& p) {
   return spread_bits(cell(p.x())) | (spread_bits(cell(p.y())) << 1U);
 }
 
-/// A square and the splats in it, [begin, end).
-struct Region {
+/// A square and its splats, [begin, end).
+struct SplatSquare {
   std::int32_t slot = -1; ///< 4 × the parent's node + quadrant
   std::int32_t level = 0;
   std::uint32_t x = 0, y = 0;
@@ -63,27 +63,27 @@ struct Region {
   float side() const { return power_of_two(-level); }
 };
 
-/// The direction that a square's reflectance is looked up in, and what it counts.
-struct Look {
+/// The direction in which a square's reflectance is evaluated, and its weight.
+struct Evaluation {
   Vec3 direction;
   float weight = 1;
 };
 
-/// The middle of a square; if the horizon cuts the square its highest corner, which counts half:
-/// the cosine falls from there to 0.
-Look look_at(const Region& region, const Vec3& n) {
-  Look look = {region.center()};
-  if (n.dot(look.direction) > square_radius * region.side())
-    return look;
+/// The centre of a square; if the horizon crosses the square, its highest corner with weight ½,
+/// since the cosine decreases from there to 0.
+Evaluation evaluation_of(const SplatSquare& square, const Vec3& n) {
+  Evaluation evaluation = {square.center()};
+  if (n.dot(evaluation.direction) > square_radius * square.side())
+    return evaluation;
   float lowest = 1;
-  Look highest = {look.direction, 0.5F};
+  Evaluation highest = {evaluation.direction, 0.5F};
   for (const auto& [u, v] : {std::pair(0.0F, 0.0F), {0.0F, 1.0F}, {1.0F, 0.0F}, {1.0F, 1.0F}}) {
-    const Vec3 corner = region.direction(u, v);
+    const Vec3 corner = square.direction(u, v);
     lowest = std::min(lowest, n.dot(corner));
     if (n.dot(corner) > n.dot(highest.direction))
       highest.direction = corner;
   }
-  return lowest < 0 ? highest : look;
+  return lowest < 0 ? highest : evaluation;
 }
 
 class PracticalSampler : public Sampler {
@@ -98,7 +98,7 @@ public:
   void prepare(const ShadingPoint& point, const Material& material) override {
     splat(point, material);
     grow();
-    value_leaves(point, material);
+    evaluate_leaves(point, material);
     multiply(point);
   }
 
@@ -135,7 +135,7 @@ public:
   std::size_t leaves() const override { return m_leaves.size(); }
 
 private:
-  /// Values in directions drawn from the reflectance, in the order of the squares they lie in.
+  /// Evaluates directions sampled from the reflectance, sorted by Morton code.
   void splat(const ShadingPoint& point, const Material& material) {
     m_lobe.prepare(point, material);
     m_lobe.sample(m_splat_points, m_splat_samples);
@@ -150,46 +150,46 @@ private:
     std::ranges::sort(m_splats, {}, &Splat::code);
   }
 
-  /// Splits squares until none holds two splats, and the light's averages with them.
+  /// Splits squares until each contains at most one splat, with the light's averages.
   void grow() {
     m_nodes.clear();
     m_parent_slots.clear();
-    m_regions.clear();
+    m_squares.clear();
     m_pending.clear();
-    Region root;
+    SplatSquare root;
     root.end = static_cast<std::uint32_t>(m_splats.size());
     root.light = wavelet::to_lanes(m_light.mean);
     root.node = m_light.root();
     m_pending.push_back(root);
     while (!m_pending.empty()) {
-      const Region region = m_pending.back();
+      const SplatSquare square = m_pending.back();
       m_pending.pop_back();
-      if (region.level == 0 || (region.end - region.begin > 1 && region.level < m_light.levels))
-        split(region);
+      if (square.level == 0 || (square.end - square.begin > 1 && square.level < m_light.levels))
+        split(square);
       else
-        add_leaf(region);
+        add_leaf(square);
     }
   }
 
-  void split(const Region& region) {
+  void split(const SplatSquare& square) {
     const auto node = static_cast<std::int32_t>(m_nodes.size());
-    link(region, node);
+    link(square, node);
     m_nodes.emplace_back();
-    m_parent_slots.push_back(region.slot);
+    m_parent_slots.push_back(square.slot);
     std::array<Float4, 4> light;
-    light.fill(region.light);
-    if (region.node != wavelet::no_node)
-      light = m_light.details(region.node).children(region.light);
-    Region quadrant = region;
+    light.fill(square.light);
+    if (square.node != wavelet::no_node)
+      light = m_light.details(square.node).children(square.light);
+    SplatSquare quadrant = square;
     ++quadrant.level;
     for (unsigned q = 0; q < 4; ++q) {
       quadrant.slot = 4 * node + static_cast<std::int32_t>(q);
-      quadrant.x = 2 * region.x + (q & 1U);
-      quadrant.y = 2 * region.y + (q >> 1U);
-      quadrant.begin = q == 0 ? region.begin : quadrant.end;
-      quadrant.end = end_of_quadrant(quadrant.begin, region.end, quadrant.level, q);
+      quadrant.x = 2 * square.x + (q & 1U);
+      quadrant.y = 2 * square.y + (q >> 1U);
+      quadrant.begin = q == 0 ? square.begin : quadrant.end;
+      quadrant.end = end_of_quadrant(quadrant.begin, square.end, quadrant.level, q);
       quadrant.light = light[q];
-      quadrant.node = m_light.child(region.node, q);
+      quadrant.node = m_light.child(square.node, q);
       m_pending.push_back(quadrant);
     }
   }
@@ -202,60 +202,61 @@ private:
     return begin;
   }
 
-  void link(const Region& region, std::int32_t child) {
-    if (region.slot >= 0)
-      m_nodes[static_cast<std::uint32_t>(region.slot) / 4].child[region.slot & 3] = child;
+  void link(const SplatSquare& square, std::int32_t child) {
+    if (square.slot >= 0)
+      m_nodes[static_cast<std::uint32_t>(square.slot) / 4].child[square.slot & 3] = child;
   }
 
-  void add_leaf(const Region& region) {
-    link(region, ~static_cast<std::int32_t>(m_regions.size()));
-    m_regions.push_back(region);
+  void add_leaf(const SplatSquare& square) {
+    link(square, ~static_cast<std::int32_t>(m_squares.size()));
+    m_squares.push_back(square);
   }
 
-  /// The reflectance over leaves: the mean of the splats there and of one look at it.
-  void value_leaves(const ShadingPoint& point, const Material& material) {
+  /// A leaf's reflectance: the mean of its splats and of one further evaluation.
+  void evaluate_leaves(const ShadingPoint& point, const Material& material) {
     m_directions.clear();
-    m_look_weights.clear();
-    for (const Region& region : m_regions) {
-      const Look look = look_at(region, point.n);
-      m_directions.push_back(look.direction);
-      m_look_weights.push_back(look.weight);
+    m_evaluation_weights.clear();
+    for (const SplatSquare& square : m_squares) {
+      const Evaluation evaluation = evaluation_of(square, point.n);
+      m_directions.push_back(evaluation.direction);
+      m_evaluation_weights.push_back(evaluation.weight);
     }
     m_values.resize(m_directions.size());
     material.evaluate(point, m_directions, m_values);
-    m_reflectance.resize(m_regions.size());
-    for (std::size_t i = 0; i < m_regions.size(); ++i)
-      m_reflectance[i] = mean_of(m_regions[i], wavelet::to_lanes(m_values[i]) * m_look_weights[i]);
+    m_reflectance.resize(m_squares.size());
+    for (std::size_t i = 0; i < m_squares.size(); ++i)
+      m_reflectance[i] =
+          mean_of(m_squares[i], wavelet::to_lanes(m_values[i]) * m_evaluation_weights[i]);
   }
 
-  Float4 mean_of(const Region& region, Float4 looked_up) const {
-    Float4 sum = looked_up;
-    for (std::uint32_t i = region.begin; i < region.end; ++i)
+  Float4 mean_of(const SplatSquare& square, Float4 evaluated) const {
+    Float4 sum = evaluated;
+    for (std::uint32_t i = square.begin; i < square.end; ++i)
       sum += m_splats[i].value;
-    return sum / static_cast<float>(1 + region.end - region.begin);
+    return sum / static_cast<float>(1 + square.end - square.begin);
   }
 
-  /// Weights of leaves, then of what lies above them.
+  /// Weights of the leaves, then of their ancestors.
   void multiply(const ShadingPoint& point) {
     Float4 floor = {};
-    for (std::size_t i = 0; i < m_regions.size(); ++i)
-      floor += m_reflectance[i] * (reflectance_floor * power_of_two(-2 * m_regions[i].level));
-    m_leaves.resize(m_regions.size());
-    for (std::size_t i = 0; i < m_regions.size(); ++i)
-      weigh_leaf(point, i, floor);
+    for (std::size_t i = 0; i < m_squares.size(); ++i)
+      floor += m_reflectance[i] * (reflectance_floor * power_of_two(-2 * m_squares[i].level));
+    m_leaves.resize(m_squares.size());
+    for (std::size_t i = 0; i < m_squares.size(); ++i)
+      set_leaf_weight(point, i, floor);
     for (std::size_t i = m_nodes.size(); i-- > 1;)
       set_weight(m_parent_slots[i], 0.25F * wavelet::lane_sum(m_nodes[i].weights));
     m_empty = !(wavelet::lane_sum(m_nodes[0].weights) > 0);
   }
 
-  void weigh_leaf(const ShadingPoint& point, std::size_t i, Float4 floor) {
-    const Region& region = m_regions[i];
+  void set_leaf_weight(const ShadingPoint& point, std::size_t i, Float4 floor) {
+    const SplatSquare& square = m_squares[i];
     const Float4 colours = larger(m_reflectance[i], floor) * wavelet::luminance_lanes;
-    const float mean = wavelet::lane_sum(region.light * colours);
-    const float height = point.n.dot(region.center());
-    const bool visible = height > -square_radius * region.side();
-    set_weight(region.slot, visible ? std::max(mean, 0.0F) : 0.0F);
-    m_leaves[i] = {&m_light, region.node, mean, colours};
+    const float mean = wavelet::lane_sum(square.light * colours);
+    const float height = point.n.dot(square.center());
+    const bool visible = height > -square_radius * square.side();
+    set_weight(square.slot, visible ? std::max(mean, 0.0F) : 0.0F);
+    m_leaves[i] = {&m_light, square.node, mean, colours};
   }
 
   void set_weight(std::int32_t slot, float weight) {
@@ -269,9 +270,9 @@ private:
   std::vector<DirectionSample> m_splat_samples;
   std::vector<Vec3> m_directions;
   std::vector<Rgb> m_values;
-  std::vector<Region> m_pending;
-  std::vector<Region> m_regions; ///< by leaf
-  std::vector<float> m_look_weights;
+  std::vector<SplatSquare> m_pending;
+  std::vector<SplatSquare> m_squares; ///< by leaf
+  std::vector<float> m_evaluation_weights;
   std::vector<Float4> m_reflectance;
   std::vector<wavelet::ProductNode> m_nodes; ///< parents before children
   std::vector<std::int32_t> m_parent_slots;

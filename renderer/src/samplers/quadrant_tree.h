@@ -1,6 +1,5 @@
 #pragma once
-// Points warped down a quadtree of weights (hierarchical sample warping, Clarberg et al. 2005):
-// each point goes its way by its own coordinates, so a whole set is warped by warping its points.
+// Hierarchical sample warping: points are warped down a quadtree of weights (Clarberg et al. 2005).
 
 #include <wavelet/product/product_tree.h>
 
@@ -8,18 +7,17 @@
 
 namespace haarlight::renderer {
 
-/// In place of a leaf, where weights are 0.
+/// Returned in place of a leaf where weights are 0.
 inline constexpr std::int32_t unreachable = -1;
 
-/// The whole square: a node, or leaf 0 if there are none.
+/// The root: a node, or leaf 0 if there are none.
 inline std::int32_t first_of(std::span<const wavelet::ProductNode> nodes) {
   return nodes.empty() ? ~0 : 0;
 }
 
-/// Leads a descent from the first node, the square, to a leaf; d.pdf becomes the density of having
-/// got there, per unit square.
-/// @param nodes weights ≥ 0, not all 0 in a node that can be reached; child ≥ 0 is a node, else the
-///              leaf ~child
+/// Descends from the root to a leaf; d.pdf becomes the density of reaching it, per unit square.
+/// @param nodes weights ≥ 0, not all 0 in a reachable node; child ≥ 0 is a node, otherwise leaf
+///              ~child
 /// @return the leaf
 inline std::int32_t warp_down(std::span<const wavelet::ProductNode> nodes, wavelet::Descent& d) {
   std::int32_t next = first_of(nodes);

@@ -1,8 +1,8 @@
-// Lamps in strata of like brightness (Agarwal, Ramamoorthi, Belongie and Jensen 2003, "Structured
-// Importance Sampling of Environment Maps").
+// Representative lights in strata of similar brightness (Agarwal, Ramamoorthi, Belongie and Jensen
+// 2003, "Structured Importance Sampling of Environment Maps").
 
-#include "samplers/kinds.h"
-#include "samplers/lamps.h"
+#include "samplers/representative_lights.h"
+#include "samplers/sampler_factories.h"
 
 #include <algorithm>
 #include <array>
@@ -14,15 +14,15 @@ namespace haarlight::renderer {
 namespace {
 
 constexpr int threshold_count = 6;
-/// Solid angle beyond which a region's occlusion is no longer of a piece.
+/// Solid angle (sr) up to which the visibility within a region is coherent.
 constexpr double coherent_solid_angle = 0.01;
 
-/// What lies in a connected component of one threshold but in none of the next.
+/// The pixels of a connected component above one threshold that are not above the next.
 struct Stratum {
-  std::uint32_t parent = 0; ///< of the lower threshold; itself for the whole sphere, which is first
+  std::uint32_t parent = 0; ///< of the lower threshold; itself for the first, the whole sphere
   double energy = 0;
   std::size_t pixels = 0;
-  std::size_t lamps = 0;
+  std::size_t lights = 0;
 
   /// The paper's Γ = L ΔΩ^¼.
   double importance(double pixel_solid_angle) const {
@@ -31,7 +31,7 @@ struct Stratum {
   }
 };
 
-/// Strata of a light and how many lamps each gets.
+/// The strata of a light and their numbers of lights.
 class Stratification {
 public:
   Stratification(const LightPixels& pixels, std::size_t count)
@@ -43,7 +43,7 @@ public:
       ++s.pixels;
     }
     merge_weak(static_cast<double>(count));
-    share_out(count);
+    distribute(count);
   }
 
   const std::vector<Stratum>& strata() const { return m_strata; }
@@ -71,7 +71,7 @@ private:
       divide(mean + i * deviation);
   }
 
-  /// Makes strata of the components of what is brighter than a threshold.
+  /// Adds the connected components above a threshold as strata.
   void divide(double threshold) {
     const auto first = static_cast<std::uint32_t>(m_strata.size());
     for (std::size_t i = 0; i < m_pixels.count(); ++i)
@@ -100,7 +100,7 @@ private:
     }
   }
 
-  /// The four that share an edge, on the square or across its folded rim.
+  /// The four pixels that share an edge, on the square or across its folded boundary.
   std::array<std::size_t, 4> neighbours(std::size_t pixel) const {
     const auto size = static_cast<std::size_t>(m_pixels.size);
     const std::size_t x = pixel % size;
@@ -116,7 +116,7 @@ private:
     return s.importance(static_cast<double>(m_pixels.solid_angle));
   }
 
-  /// Strata whose share is less than half a lamp go to what surrounds them.
+  /// Strata that would get less than half a light are merged into their parents.
   void merge_weak(double count) {
     double sum = 0;
     for (const Stratum& s : m_strata)
@@ -138,22 +138,22 @@ private:
       stratum = into[stratum];
   }
 
-  /// Lamps in proportion to importance (Webster's rule), but no more than pixels.
-  void share_out(std::size_t count) {
-    using Claim = std::pair<double, std::size_t>;
-    std::priority_queue<Claim> claims;
-    const auto claim = [&](std::size_t k) {
+  /// Numbers of lights in proportion to importance (Webster's method), at most one per pixel.
+  void distribute(std::size_t count) {
+    using Candidate = std::pair<double, std::size_t>;
+    std::priority_queue<Candidate> candidates;
+    const auto add_candidate = [&](std::size_t k) {
       const Stratum& s = m_strata[k];
-      if (s.lamps < s.pixels && s.energy > 0)
-        claims.push({importance(s) / (static_cast<double>(s.lamps) + 0.5), k});
+      if (s.lights < s.pixels && s.energy > 0)
+        candidates.push({importance(s) / (static_cast<double>(s.lights) + 0.5), k});
     };
     for (std::size_t k = 0; k < m_strata.size(); ++k)
-      claim(k);
-    for (std::size_t i = 0; i < count && !claims.empty(); ++i) {
-      const std::size_t k = claims.top().second;
-      claims.pop();
-      ++m_strata[k].lamps;
-      claim(k);
+      add_candidate(k);
+    for (std::size_t i = 0; i < count && !candidates.empty(); ++i) {
+      const std::size_t k = candidates.top().second;
+      candidates.pop();
+      ++m_strata[k].lights;
+      add_candidate(k);
     }
   }
 
@@ -163,8 +163,8 @@ private:
   std::vector<std::size_t> m_stack;
 };
 
-/// Divides strata among centres far from one another (Hochbaum and Shmoys 1985: each next centre is
-/// the pixel furthest from all), the brightest strata first, whose centres the others keep off too.
+/// Partitions strata by the farthest-point heuristic (Hochbaum and Shmoys 1985: the next centre is
+/// the pixel farthest from all centres), beginning with the brightest stratum.
 class Centres {
 public:
   Centres(const LightPixels& pixels, const Stratification& stratification)
@@ -173,7 +173,7 @@ public:
     std::size_t end = pixels.count();
     for (std::size_t k = strata.size(); k-- > 0;) {
       const std::size_t begin = end - strata[k].pixels;
-      place(std::span(m_order).subspan(begin, end - begin), strata[k].lamps);
+      place(std::span(m_order).subspan(begin, end - begin), strata[k].lights);
       end = begin;
     }
     for (std::size_t i = 0; i < pixels.count(); ++i)
@@ -181,17 +181,17 @@ public:
         m_regions[i] = nearest(i);
   }
 
-  std::vector<Lamp> lamps() const {
+  std::vector<RepresentativeLight> lights() const {
     if (m_centres.empty())
       return {};
-    return lamps_of_regions(m_pixels, m_regions, m_centres.size());
+    return lights_of_regions(m_pixels, m_regions, m_centres.size());
   }
 
 private:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  void place(std::span<const std::uint32_t> stratum, std::size_t lamps) {
-    if (lamps == 0)
+  void place(std::span<const std::uint32_t> stratum, std::size_t lights) {
+    if (lights == 0)
       return;
     m_any.assign(stratum.size(), std::numeric_limits<float>::max());
     m_own.assign(stratum.size(), std::numeric_limits<float>::max());
@@ -199,7 +199,7 @@ private:
       for (const Vec3& centre : m_centres)
         m_any[j] = std::min(m_any[j], distance(stratum[j], centre));
     std::size_t next = m_centres.empty() ? brightest(stratum) : furthest();
-    for (; lamps > 0 && m_any[next] > 0; --lamps) {
+    for (; lights > 0 && m_any[next] > 0; --lights) {
       add(stratum, m_pixels.directions[stratum[next]]);
       next = furthest();
     }
@@ -232,7 +232,7 @@ private:
     return static_cast<std::size_t>(found - stratum.begin());
   }
 
-  /// Of all centres, for pixels whose stratum has none.
+  /// Among all centres, for pixels whose stratum has none.
   std::uint32_t nearest(std::size_t pixel) const {
     const auto found = std::ranges::min_element(
         m_centres, std::less(), [&](const Vec3& centre) { return distance(pixel, centre); });
@@ -251,10 +251,10 @@ private:
 
 std::unique_ptr<SamplerFactory> make_structured_factory(const LoadedScene& scene,
                                                         const SamplerOptions& options) {
-  return lamp_factory(
+  return representative_light_factory(
       scene.light(),
       [](const LightPixels& pixels, std::size_t count) {
-        return Centres(pixels, Stratification(pixels, count)).lamps();
+        return Centres(pixels, Stratification(pixels, count)).lights();
       },
       options);
 }

@@ -8,8 +8,8 @@
 
 namespace haarlight::renderer {
 
-/// A light's cell of ω_r, and a reflectance's of θ_r and roll in that cell's frame. Points with the
-/// same cells have the same product.
+/// The light's cell of ω_r, and the reflectance's cells of θ_r and roll in that cell's frame.
+/// Points with the same cells have the same product.
 struct TableCells {
   int light_column = 0;
   int light_row = 0;
@@ -19,14 +19,14 @@ struct TableCells {
   bool operator==(const TableCells&) const = default;
 };
 
-/// @param table of the light's maps; the material must have a table of rolls
+/// @param table of the light's maps; the material must have a roll table
 TableCells nearest_cells(const TreeTable& table, const ShadingPoint& point,
                          const Material& material);
 
 /// The frame of a light's entry.
 Frame entry_frame(const TreeTable& table, const TableCells& cells);
 
-/// The stored tree of a reflectance's entry, and how it is seen.
+/// The stored tree of a reflectance's entry, and the symmetry that maps it to the entry.
 struct RollEntry {
   const wavelet::TreeView& tree;
   wavelet::SquareSymmetry symmetry;

@@ -1,9 +1,10 @@
-// Wavelet importance sampling as published (Clarberg, Jarosz, Akenine-Möller and Jensen 2005): the
-// nearest entries of two tables as hash tables of wavelet coefficients of luminance, their product
-// by the published algorithm, once for each point, and points warped down the product's tree.
+// Wavelet importance sampling as published (Clarberg, Jarosz, Akenine-Möller and Jensen 2005): at
+// each point the nearest entries of two tables, as hash tables of wavelet coefficients of
+// luminance, are multiplied by the published algorithm, and points are warped down the product's
+// tree.
 
-#include "samplers/kinds.h"
 #include "samplers/quadrant_tree.h"
+#include "samplers/sampler_factories.h"
 #include "samplers/table_cells.h"
 
 #include <wavelet/reference/reference.h>
@@ -39,7 +40,7 @@ void insert_nodes(const RollEntry& entry, std::uint32_t node, const Square& s, C
                  reference::child(s, static_cast<int>(q & 1U), static_cast<int>(q >> 1U)), out);
 }
 
-/// A table's entry as the published algorithm wants it.
+/// A table's entry as coefficients of luminance.
 Coefficients coefficients_of(const RollEntry& entry) {
   Coefficients result;
   result.levels = entry.tree.levels;
@@ -48,7 +49,7 @@ Coefficients coefficients_of(const RollEntry& entry) {
   return result;
 }
 
-/// A function's tree with averages clamped at 0, to warp points down.
+/// A function's quadtree with averages clamped at 0, for warping.
 class WarpTree {
 public:
   void build(const Coefficients& function) {
@@ -59,17 +60,17 @@ public:
       node_of(entry.first);
     m_means.assign(m_nodes.size(), function.root);
     for (std::size_t i = 0; i < m_nodes.size(); ++i)
-      weigh(i, function.at(m_squares[i]));
+      set_quadrants(i, function.at(m_squares[i]));
     m_empty = !(function.root > 0);
   }
 
   bool empty() const { return m_empty; }
 
-  /// None if the function is the same everywhere.
+  /// Empty if the function is constant.
   std::span<const wavelet::ProductNode> nodes() const { return m_nodes; }
 
 private:
-  /// The node of a square, made together with its ancestors', which come first.
+  /// The node of a square; creates it after its ancestors if missing.
   std::size_t node_of(const Square& s) {
     if (const auto found = m_places.find(s); found != m_places.end())
       return found->second;
@@ -83,8 +84,8 @@ private:
     return place;
   }
 
-  /// A node's quadrants, from its own average, which a clamped parent's descent starts from.
-  void weigh(std::size_t place, const Differences& d) {
+  /// Sets the weights of a node's quadrants from its own average, which may be negative.
+  void set_quadrants(std::size_t place, const Differences& d) {
     wavelet::ProductNode& node = m_nodes[place];
     const float scale = power_of_two(m_squares[place].level);
     const float d1 = scale * d[0];
@@ -102,7 +103,7 @@ private:
 
   std::vector<wavelet::ProductNode> m_nodes;
   std::vector<Square> m_squares; ///< by node
-  std::vector<float> m_means;    ///< by node, as they are, below 0 or not
+  std::vector<float> m_means;    ///< by node, not clamped
   std::unordered_map<Square, std::size_t, reference::SquareHash> m_places;
   bool m_empty = true;
 };

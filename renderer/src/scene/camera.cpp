@@ -7,9 +7,9 @@
 namespace haarlight::renderer {
 namespace {
 
-/// Half the picture's height at distance 1 from the eye, or on the film plane if parallel.
+/// Half the picture's height at distance 1 from the eye, or on the film plane if orthographic.
 double half_height(const CameraDescription& description) {
-  if (description.projection == Projection::Orthographic)
+  if (description.projection == CameraProjection::Orthographic)
     return 0.5 * description.height;
   const SineCosine half = sine_cosine_degrees(0.5 * description.fov);
   return half.sine / half.cosine;
@@ -27,7 +27,7 @@ Camera::Camera(const CameraDescription& description, int width, int height)
   const Eigen::Vector3d up = right.cross(forward);
   const double pixel = 2 * half_height(description) / height;
   const Eigen::Vector3d corner = pixel * (0.5 * height * up - 0.5 * width * right);
-  const bool perspective = m_projection == Projection::Perspective;
+  const bool perspective = m_projection == CameraProjection::Perspective;
   m_forward = forward.cast<float>();
   m_corner = (perspective ? Eigen::Vector3d(forward + corner) : corner).cast<float>();
   m_across = (pixel * right).cast<float>();
@@ -36,7 +36,7 @@ Camera::Camera(const CameraDescription& description, int width, int height)
 
 Ray Camera::generate_ray(float x, float y) const {
   const Vec3 film = m_corner + x * m_across + y * m_down;
-  if (m_projection == Projection::Perspective)
+  if (m_projection == CameraProjection::Perspective)
     return {m_from, film.normalized()};
   return {m_from + film, m_forward};
 }

@@ -17,18 +17,18 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
   const unsigned needed = traits(sampler).needs | further;
   const std::clock_t start = std::clock();
   if ((needed & NeedsLightDistribution) != 0)
-    m_light.need_distribution();
+    m_light.require_distribution();
   if ((needed & NeedsLightTree) != 0 || unshadowed_product)
-    m_light.need_tree();
+    m_light.require_tree();
   if ((needed & NeedsMaterialTrees) != 0 || unshadowed_product)
     for (Material& material : m_materials)
-      material.need_trees();
+      material.require_trees();
   if ((needed & NeedsLobes) != 0)
     for (Material& material : m_materials)
-      material.need_lobe();
+      material.require_lobe();
   if ((needed & NeedsTables) != 0) {
     for (Material& material : m_materials)
-      material.need_roll_table();
+      material.require_roll_table();
     check_tables(traits(sampler).name);
   }
   m_preparation_seconds =
@@ -38,18 +38,18 @@ LoadedScene::LoadedScene(const SceneDescription& description, const SourceLookup
 void LoadedScene::check_tables(const std::string& sampler) const {
   const TreeTable* light = m_light.rotated_table();
   if (light == nullptr)
-    throw_input_error(m_description.path,
-                      "light: names no \"table\", which " + sampler +
-                          " needs: a .haar made by probe2maps --orientations M");
+    throw_input_error(m_description.path, "light: the key \"table\" is missing; the sampler " +
+                                              sampler +
+                                              " needs a .haar of probe2maps --orientations M");
   for (std::size_t i = 0; i < m_materials.size(); ++i) {
     const TreeTable* rolls = m_materials[i].roll_table();
     if (rolls == nullptr)
       throw_input_error(m_description.path,
                         std::string("materials.")
                             .append(m_materials[i].name())
-                            .append(": names no \"table\", which ")
+                            .append(": the key \"table\" is missing; the sampler ")
                             .append(sampler)
-                            .append(" needs: a .haar made by brdf2maps --roll N"));
+                            .append(" needs a .haar of brdf2maps --roll N"));
   }
 }
 

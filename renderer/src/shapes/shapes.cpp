@@ -1,7 +1,6 @@
 #include <renderer/shapes/shapes.h>
 
-#include "shapes/shape_canonical.h"
-#include "shapes/shape_placement.h"
+#include "shapes/solid.h"
 
 #include <algorithm>
 #include <bit>
@@ -15,12 +14,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Shares of a bounding radius and of the distances involved that float may be wrong by, generously.
+// Generous relative error bounds of float, for bounding radii and distances.
 constexpr float bound_pad = 1e-5F;
 constexpr float squared_pad = 1.01F;
 constexpr float distance_pad = 1e-8F;
 
-/// A ray against bounding spheres, four at a time.
+/// Tests a ray against four bounding spheres at a time.
 class BoundTest {
 public:
   explicit BoundTest(const Ray& ray) {
@@ -30,7 +29,7 @@ public:
     }
   }
 
-  /// Bit i: the ray may meet what lies in sphere i. Never misses one that it meets.
+  /// Bit i: the ray may hit the solid in sphere i. Conservative.
   unsigned candidates(const BoundBatch& batch) const {
     const Float4 x = batch.x - m_origin[0];
     const Float4 y = batch.y - m_origin[1];
@@ -52,7 +51,7 @@ private:
   Float4 m_direction[3];
 };
 
-/// Calls visit(solid) for those of the solids that the ray may meet, until it returns true.
+/// Calls visit(solid) for the solids that the ray may hit, until it returns true.
 template <class Visit>
 bool visit_candidates(const std::vector<BoundBatch>& bounds, const std::vector<Solid>& solids,
                       const Ray& ray, Visit visit) {
@@ -92,7 +91,7 @@ double plane_distance(const WorldPlane& plane, const Ray& ray) {
   return t > 0 ? t : no_hit; // NaN, from a ray within the plane, is no hit
 }
 
-/// No hit beyond what a float position can hold.
+/// Upper bound on t, so that positions stay within float.
 double limit(const Ray& ray) { return std::min(static_cast<double>(ray.t_max), 1e30); }
 
 Vector3d point_at(const Ray& ray, double t) {
@@ -121,7 +120,7 @@ Hit solid_hit(const Solid& solid, double t, const Vector3d& p) {
 
 } // namespace
 
-int ShapeSet::add(const Shape& shape, const Transform& transform) {
+int ShapeSet::add(const Shape& shape, const AffineMap& transform) {
   assert(transform.usable());
   const int object = size();
   if (const Plane* plane = std::get_if<Plane>(&shape)) {

@@ -1,18 +1,108 @@
-// Transfer that is all but one object's visibility: the object moves, its shadow with it.
-#include <renderer/transfer/relight.h>
+// Relighting of moving objects: the transfer is the product of all factors except one object's
+// visibility.
 
-#include "transfer/hidden_share.h"
+#include "visibility/cap.h"
+
+#include <renderer/transfer/relight.h>
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/product/multiply.h>
 #include <wavelet/square/sphere_map.h>
+#include <wavelet/tree/tree.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
+#include <vector>
 
 namespace haarlight::renderer {
 namespace {
 
-/// The moved object by itself.
+using namespace detail;
+using wavelet::RegionPart;
+using wavelet::SquarePlace;
+
+/// Integrates trees over caps: squares inside count with their averages, and only squares that the
+/// cap's edge crosses are descended into. Shared by threads.
+class SphereOcclusion {
+public:
+  SphereOcclusion() {
+    std::vector<SquarePlace> places = {SquarePlace{}};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      m_bounds.push_back(wavelet::square_cap(places[i]));
+      if (places[i].level < finest_level)
+        for (unsigned q = 0; q < 4; ++q)
+          places.push_back(places[i].quadrant(q));
+    }
+  }
+
+  /// ∫∫ T over the cap, per channel; the whole square's area is 1.
+  Rgb integral(const wavelet::TreeView& tree, const Cap& cap) const {
+    const Walk walk = {tree, cap, negligible_fraction * luminance(tree.mean)};
+    return wavelet::to_rgb(integral(walk, tree.root(), wavelet::to_lanes(tree.mean), {0, 0}));
+  }
+
+private:
+  /// A cap's edge is treated as straight within constant squares of at least this level and at most
+  /// this size relative to the cap, …
+  static constexpr int straight_level = 5;
+  static constexpr float straight_fraction = 0.25F;
+  /// … within all squares of this level, …
+  static constexpr int finest_level = 8;
+  /// … and within squares that contain less than this fraction of the integral.
+  static constexpr float negligible_fraction = 1e-3F;
+  /// Half a square's mean width over the radius of its bounding circle.
+  static constexpr float half_width = 0.8F;
+
+  struct Walk {
+    const wavelet::TreeView& tree;
+    const Cap& cap;
+    float negligible; ///< luminance times area
+  };
+  struct Square {
+    std::uint32_t index; ///< in a complete tree: quadrant q of i is 4 i + 1 + q
+    int level;
+  };
+
+  /// The fraction of a square inside the cap, from the distance of its centre to the cap's edge.
+  static float fraction_inside(const wavelet::SquareCap& bounds, const Cap& cap) {
+    const float along = cap.axis.dot(bounds.centre);
+    const float across = std::sqrt(std::max(1 - along * along, 0.0F));
+    const float inside = cap.sine * along - cap.cosine * across;
+    return std::clamp(0.5F + 0.5F * inside / (half_width * bounds.sine), 0.0F, 1.0F);
+  }
+
+  Float4 integral(const Walk& walk, std::uint32_t node, Float4 mean, const Square& square) const {
+    const wavelet::SquareCap& bounds = m_bounds[square.index];
+    const float weight = wavelet::lane_sum(mean * wavelet::luminance_lanes);
+    const RegionPart part = walk.cap.classify(bounds);
+    if (part == RegionPart::Outside || !(weight > 0))
+      return Float4{};
+    if (part == RegionPart::Inside)
+      return mean;
+    const bool constant = node == wavelet::no_node;
+    const bool straight =
+        square.level >= straight_level && bounds.sine <= straight_fraction * walk.cap.sine;
+    if (square.level == finest_level ||
+        weight * power_of_two(-2 * square.level) <= walk.negligible || (constant && straight))
+      return mean * fraction_inside(bounds, walk.cap);
+    std::array<Float4, 4> means = {mean, mean, mean, mean};
+    std::array<std::uint32_t, 4> children = {node, node, node, node};
+    if (!constant) {
+      means = walk.tree.details(node).children(mean);
+      children = walk.tree.children(node);
+    }
+    Float4 sum = {};
+    for (unsigned q = 0; q < 4; ++q)
+      sum += integral(walk, children[q], means[q], {4 * square.index + 1 + q, square.level + 1});
+    return 0.25F * sum;
+  }
+
+  std::vector<wavelet::SquareCap> m_bounds; ///< as in a complete tree
+};
+
+/// The moved object alone.
 class MovedObject {
 public:
   MovedObject(const ObjectDescription& object, const Vec3& move, const Light& light)
@@ -21,28 +111,28 @@ public:
     m_visibility.emplace(m_shapes, light);
   }
 
-  /// The nearest hit on it, if nothing else is nearer.
+  /// The nearest hit of a ray.
   bool intersect(const Ray& ray, Hit& hit) const { return m_shapes.intersect(ray, hit); }
 
-  /// ∫∫ of a tree over the directions that the object hides from a point.
-  Rgb hidden(const Hit& from, const wavelet::TreeView& tree,
-             const detail::HiddenShare& share) const {
+  /// ∫∫ of a tree over the directions that the object occludes at a point.
+  Rgb occluded_part(const Hit& from, const wavelet::TreeView& tree,
+                    const SphereOcclusion& occlusion) const {
     if (m_shapes.solids().empty())
-      return hidden_by_tree(from, tree);
-    const detail::Solid& solid = m_shapes.solids().front();
+      return occluded_by_tree(from, tree);
+    const Solid& solid = m_shapes.solids().front();
     const Eigen::Vector3d origin = leave(from, from.normal).origin.cast<double>();
     const Eigen::Vector3d centre = solid.center - origin;
-    if (centre.dot(from.normal.cast<double>()) < -solid.radius) // below the horizon, as nothing is
+    if (centre.dot(from.normal.cast<double>()) < -solid.radius) // below the horizon
       return Rgb::Zero();
-    if (solid.kind != detail::SolidKind::WorldSphere)
-      return hidden_by_tree(from, tree);
-    detail::Cap cap = detail::Cap::around_ball(centre, solid.radius);
+    if (solid.kind != SolidKind::WorldSphere)
+      return occluded_by_tree(from, tree);
+    Cap cap = Cap::around_ball(centre, solid.radius);
     cap.axis = m_light.to_light(cap.axis);
-    return share.within(tree, cap);
+    return occlusion.integral(tree, cap);
   }
 
 private:
-  Rgb hidden_by_tree(const Hit& from, const wavelet::TreeView& tree) const {
+  Rgb occluded_by_tree(const Hit& from, const wavelet::TreeView& tree) const {
     Hit elsewhere = from;
     elsewhere.object = -1;
     const wavelet::Tree seen = m_visibility->object(0, elsewhere, tree.levels);
@@ -54,14 +144,13 @@ private:
   std::optional<VisibilityTrees> m_visibility;
 };
 
-/// Shades the moved object itself: the product of light and reflectance, of whose squares those
-/// count whose centres nothing else hides. Each product follows the last, of a point that should
-/// be close by.
+/// Shades the moved object: the integral of the product of light and reflectance over the leaves
+/// whose centres are not occluded by other objects. Products of neighbouring points are updated.
 class ObjectShader {
 public:
   ObjectShader(const LoadedScene& scene, int object)
       : m_scene(scene), m_object(object), m_product(scene.light().tree()) {
-    m_options.drift_bound = 0; // integrals have to be each point's own
+    m_options.drift_bound = 0; // each point needs its own integral
     for (int i = 0; i < static_cast<int>(scene.description().objects.size()); ++i) {
       const ObjectDescription& other = scene.description().objects[static_cast<std::size_t>(i)];
       if (i != object)
@@ -74,19 +163,19 @@ public:
     const ShadingPoint point = shading_point(light.to_light(hit.normal), light.to_light(wo));
     const wavelet::RotatedReflectance reflectance =
         m_scene.material_of(m_object).reflectance(point);
-    const wavelet::ProductTree& product = m_follows ? m_product.follow(reflectance, m_options)
-                                                    : m_product.build(reflectance, m_options);
-    m_follows = true;
+    const wavelet::ProductTree& product = m_has_previous ? m_product.follow(reflectance, m_options)
+                                                         : m_product.build(reflectance, m_options);
+    m_has_previous = true;
     Float4 sum = {};
     for (const wavelet::ProductNode& node : product.nodes())
       for (const std::int32_t child : node.child)
         if (child < 0)
-          sum += seen_share(hit, product.leaf(child));
+          sum += visible_part(hit, product.leaf(child));
     return wavelet::to_rgb(sum) * wavelet::sphere_area;
   }
 
 private:
-  Float4 seen_share(const Hit& hit, const wavelet::ProductLeaf& leaf) const {
+  Float4 visible_part(const Hit& hit, const wavelet::ProductLeaf& leaf) const {
     const Float4 value = leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
     if (!(wavelet::lane_sum(value * wavelet::luminance_lanes) > 0))
       return Float4{};
@@ -101,7 +190,7 @@ private:
   ShapeSet m_others;
   wavelet::AdaptiveOptions m_options;
   wavelet::AdaptiveProduct m_product;
-  bool m_follows = false;
+  bool m_has_previous = false;
 };
 
 class ObjectRelighter : public Relighter {
@@ -145,14 +234,15 @@ private:
     const wavelet::TreeView& tree = m_transfer.trees()[pixel];
     if (point.hit.object < 0)
       return tree.mean * wavelet::sphere_area;
-    return ((tree.mean - moved.hidden(point.hit, tree, m_share)) * wavelet::sphere_area).max(0.0F);
+    return ((tree.mean - moved.occluded_part(point.hit, tree, m_occlusion)) * wavelet::sphere_area)
+        .max(0.0F);
   }
 
   const Transfer& m_transfer;
   LoadedScene m_scene;
   int m_object;
   std::vector<FilmPoint> m_points;
-  detail::HiddenShare m_share;
+  SphereOcclusion m_occlusion;
 };
 
 } // namespace

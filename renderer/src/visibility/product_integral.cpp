@@ -16,14 +16,14 @@ namespace {
 
 using wavelet::MaskedLeaf;
 
-/// Points of a square that the reflectance is averaged over: Gauss-Legendre, 2 × 2.
+/// Gauss-Legendre points (2 × 2) of a square over which the reflectance is averaged.
 constexpr std::size_t points_per_leaf = 4;
 
-/// Squares of this level are not split, however much the reflectance varies.
-constexpr int finest_level = 14;
+/// Squares of this level are not split further.
+constexpr int finest_split_level = 14;
 
-/// Squares in work at once: beyond that, those left are added as they are. No pixel needs a tenth
-/// of it unless rounding of a light of very high contrast makes noise of what it reflects.
+/// Squares per pixel at once; further squares are added without splitting. Pixels need less than a
+/// tenth of this unless the light has a contrast beyond the precision of float.
 constexpr std::size_t most_leaves = 1 << 16;
 
 Vec3 leaf_direction(const MaskedLeaf& leaf, std::size_t point) {
@@ -34,7 +34,7 @@ Vec3 leaf_direction(const MaskedLeaf& leaf, std::size_t point) {
            (static_cast<float>(leaf.y) + ((point & 2U) == 0 ? low : 1 - low)) * side));
 }
 
-/// The light's tree, with nothing dropped if there is a probe to make it from.
+/// The light's tree, built from the probe without dropping coefficients if there is one.
 class LightTree {
 public:
   LightTree(const Light& light, int size) : m_view(light.tree()) {
@@ -56,42 +56,11 @@ private:
   wavelet::TreeView m_view;
 };
 
-/// The visibilities at one point after another.
-class PointMasks {
-public:
-  PointMasks(const VisibilityTrees& visibility, int objects, int levels)
-      : m_visibility(visibility), m_levels(levels), m_trees(static_cast<std::size_t>(objects)) {}
-
-  /// Of all objects that may be in the way; valid until the next call. The reflectance holds the
-  /// horizon itself.
-  std::span<const wavelet::TreeView> at(const Hit& hit) {
-    m_views.clear();
-    for (std::size_t i = 0; i < m_trees.size(); ++i) {
-      const int object = static_cast<int>(i);
-      if (!m_visibility.may_hide(object, hit))
-        continue;
-      if (object == hit.object)
-        m_visibility.own(hit, m_levels, m_builder, m_trees[i]);
-      else
-        m_visibility.object(object, hit, m_levels, m_builder, m_trees[i]);
-      m_views.push_back(m_trees[i].view());
-    }
-    return m_views;
-  }
-
-private:
-  const VisibilityTrees& m_visibility;
-  int m_levels;
-  wavelet::RegionTreeBuilder m_builder;
-  std::vector<wavelet::Tree> m_trees; ///< by object
-  std::vector<wavelet::TreeView> m_views;
-};
-
-/// The reflectance times what is left of the light, over the squares of a masked product.
+/// Integrates the reflectance times the unoccluded light over the squares of a masked product.
 class ReflectedLight {
 public:
-  ReflectedLight(wavelet::MaskedProduct& masked, float split_share)
-      : m_masked(masked), m_split_share(split_share) {}
+  ReflectedLight(wavelet::MaskedProduct& masked, float split_fraction)
+      : m_masked(masked), m_split_fraction(split_fraction) {}
 
   /// Per unit square.
   Rgb integral(const ShadingPoint& point, const Material& material,
@@ -99,7 +68,7 @@ public:
     m_leaves.assign(leaves.begin(), leaves.end());
     m_sum.setZero();
     look_up(point, material);
-    const float largest = m_split_share * magnitude();
+    const float largest = m_split_fraction * magnitude();
     while (!m_leaves.empty()) {
       add_or_split(largest);
       m_leaves.swap(m_next);
@@ -123,7 +92,7 @@ private:
     return 0.25F * ((b[0] + b[1]) + (b[2] + b[3])) * light_on(m_leaves[i]);
   }
 
-  /// How far it may be off.
+  /// Bound on the error of a contribution.
   float range(std::size_t i) const {
     const Rgb* b = m_reflectance.data() + points_per_leaf * i;
     const Rgb low = b[0].min(b[1]).min(b[2].min(b[3]));
@@ -143,11 +112,11 @@ private:
     return static_cast<float>(sum);
   }
 
-  /// Leaves whose quadrants are to follow go to m_next.
+  /// Adds leaves, or puts their quadrants into m_next.
   void add_or_split(float largest) {
     m_next.clear();
     for (std::size_t i = 0; i < m_leaves.size(); ++i) {
-      if (m_leaves[i].level < finest_level && m_next.size() + 4 <= most_leaves &&
+      if (m_leaves[i].level < finest_split_level && m_next.size() + 4 <= most_leaves &&
           range(i) > largest)
         m_masked.split(m_leaves[i], m_next);
       else
@@ -156,7 +125,7 @@ private:
   }
 
   wavelet::MaskedProduct& m_masked;
-  float m_split_share;
+  float m_split_fraction;
   Eigen::Array3d m_sum;
   std::vector<MaskedLeaf> m_leaves;
   std::vector<MaskedLeaf> m_next;
@@ -169,10 +138,10 @@ public:
   IntegralShader(const LoadedScene& scene, const ProductIntegralOptions& options,
                  const wavelet::TreeView& light, const VisibilityTrees& visibility)
       : m_scene(scene), m_options(options), m_product(light),
-        m_masks(visibility, scene.shapes().size(), options.levels),
-        m_reflected(m_masked, options.split_share) {}
+        m_occluders(visibility, scene.shapes().size(), options.levels),
+        m_reflected(m_masked, options.split_fraction) {}
 
-  void forget() override {}
+  void reset() override {}
 
   void shade(const PixelHit& seen, const Pass&, PixelSums& sums) override {
     const Light& light = m_scene.light();
@@ -183,7 +152,7 @@ public:
         m_product.build(material.reflectance(point), m_options.product);
     ++m_cost.points;
     m_cost.leaves += product.leaf_count();
-    const auto leaves = m_masked.build(product, m_masks.at(seen.hit));
+    const auto leaves = m_masked.build(product, m_occluders.at(seen.hit));
     sums.add(m_reflected.integral(point, material, leaves) * wavelet::sphere_area, true, 0);
   }
 
@@ -192,7 +161,7 @@ private:
   const ProductIntegralOptions& m_options;
   wavelet::AdaptiveProduct m_product;
   wavelet::MaskedProduct m_masked;
-  PointMasks m_masks;
+  OccluderTrees m_occluders;
   ReflectedLight m_reflected;
 };
 

@@ -6,25 +6,25 @@
 namespace haarlight::renderer::detail {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float lane_infinity = std::numeric_limits<float>::infinity();
 
-/// Keeps divisors from 0.
+/// Avoids division by 0.
 constexpr float tiny = 1e-20F;
 
-/// The values of t that four lines spend inside something.
+/// The intervals of t in which four lines are inside a shape.
 struct Spans {
   Float4 enter;
   Float4 exit;
 };
 
-Spans both(const Spans& a, const Spans& b) {
+Spans intersection(const Spans& a, const Spans& b) {
   return {larger(a.enter, b.enter), smaller(a.exit, b.exit)};
 }
 
-Int4 ahead(const Spans& spans) { return (spans.enter < spans.exit) & (spans.exit > Float4{}); }
+Int4 is_ahead(const Spans& spans) { return (spans.enter < spans.exit) & (spans.exit > Float4{}); }
 
-/// Where origin + t·direction lies within [−half, half] along one axis.
-Spans slab(float origin, Float4 direction, float half) {
+/// The interval of t in which origin + t·direction lies in [−half, half] along one axis.
+Spans slab_span(float origin, Float4 direction, float half) {
   const Float4 divisor =
       select(absolute(direction) > broadcast<Float4>(tiny), direction, broadcast<Float4>(tiny));
   const Float4 a = (-half - origin) / divisor;
@@ -36,24 +36,24 @@ Spans slab(float origin, Float4 direction, float half) {
 struct Quadratic {
   Float4 a, b, c;
 
-  /// Where it is below 0, for a ≥ 0; nowhere if it has no roots.
+  /// The interval where it is below 0, for a ≥ 0; empty without roots.
   Spans below() const {
     const Float4 square = b * b - a * c;
     const Float4 root = square_root(larger(square, Float4{}));
     const Int4 real = square > Float4{};
-    return {select(real, (-b - root) / (a + tiny), broadcast<Float4>(infinity)),
-            select(real, (-b + root) / (a + tiny), broadcast<Float4>(-infinity))};
+    return {select(real, (-b - root) / (a + tiny), broadcast<Float4>(lane_infinity)),
+            select(real, (-b + root) / (a + tiny), broadcast<Float4>(-lane_infinity))};
   }
 };
 
 /// x² + y² − 1 along the rays.
-Quadratic unit_tube(const Vec3& o, const Lanes3& d) {
+Quadratic tube_quadratic(const Vec3& o, const Lanes3& d) {
   return {d.x * d.x + d.y * d.y, o.x() * d.x + o.y() * d.y,
           broadcast<Float4>(o.x() * o.x() + o.y() * o.y() - 1)};
 }
 
-Quadratic unit_sphere(const Vec3& o, const Lanes3& d) {
-  const Quadratic tube = unit_tube(o, d);
+Quadratic sphere_quadratic(const Vec3& o, const Lanes3& d) {
+  const Quadratic tube = tube_quadratic(o, d);
   return {tube.a + d.z * d.z, tube.b + o.z() * d.z, tube.c + o.z() * o.z()};
 }
 
@@ -63,28 +63,29 @@ Float4 squared_distance_to_axis(const Vec3& o, const Lanes3& d, Float4 t) {
   return x * x + y * y;
 }
 
-Int4 meet_disk(const Vec3& o, const Lanes3& d) {
+Int4 hits_disk(const Vec3& o, const Lanes3& d) {
   const Float4 t = -o.z() / d.z;
   return (t > Float4{}) & (squared_distance_to_axis(o, d, t) < broadcast<Float4>(1));
 }
 
-Int4 meet_box(const Vec3& o, const Lanes3& d) {
-  return ahead(both(both(slab(o.x(), d.x, 1), slab(o.y(), d.y, 1)), slab(o.z(), d.z, 1)));
+Int4 hits_box(const Vec3& o, const Lanes3& d) {
+  return is_ahead(intersection(intersection(slab_span(o.x(), d.x, 1), slab_span(o.y(), d.y, 1)),
+                               slab_span(o.z(), d.z, 1)));
 }
 
-Int4 meet_cylinder(const Vec3& o, const Lanes3& d) {
-  return ahead(both(unit_tube(o, d).below(), slab(o.z(), d.z, 1)));
+Int4 hits_cylinder(const Vec3& o, const Lanes3& d) {
+  return is_ahead(intersection(tube_quadratic(o, d).below(), slab_span(o.z(), d.z, 1)));
 }
 
 /// The base, or either root of the mantle's x² + y² − (1 − z)².
-Int4 meet_cone(const Vec3& o, const Lanes3& d) {
+Int4 hits_cone(const Vec3& o, const Lanes3& d) {
   const float below_tip = 1 - o.z();
   const Float4 a = d.x * d.x + d.y * d.y - d.z * d.z;
   const Float4 b = o.x() * d.x + o.y() * d.y + below_tip * d.z;
   const float c = o.x() * o.x() + o.y() * o.y() - below_tip * below_tip;
   const Float4 square = b * b - a * c;
   const Float4 root = square_root(larger(square, Float4{}));
-  Int4 result = meet_disk(o, d);
+  Int4 result = hits_disk(o, d);
   for (const Float4 t : {(-b - root) / a, (-b + root) / a}) {
     const Float4 z = o.z() + t * d.z;
     result |= (square > Float4{}) & (t > Float4{}) & (z > Float4{}) & (z < broadcast<Float4>(1));
@@ -92,8 +93,8 @@ Int4 meet_cone(const Vec3& o, const Lanes3& d) {
   return result;
 }
 
-/// Where rays are closest to the point of the torus' circle that is closest to where they are at t.
-Float4 closer(const Vec3& o, const Lanes3& d, Float4 t) {
+/// The t at which rays are closest to the point of the torus's circle closest to the ray at t.
+Float4 next_closest(const Vec3& o, const Lanes3& d, Float4 t) {
   const Float4 x = o.x() + t * d.x;
   const Float4 y = o.y() + t * d.y;
   const Float4 scale = 1 / (square_root(x * x + y * y) + tiny);
@@ -101,17 +102,17 @@ Float4 closer(const Vec3& o, const Lanes3& d, Float4 t) {
   return along / (d.x * d.x + d.y * d.y + d.z * d.z);
 }
 
-/// A torus is met, if at all, where the ray is next to its circle: found in turns from where the
-/// ray is above or below that, and from where it passes through its plane.
-Int4 meet_torus(float tube, const Vec3& o, const Lanes3& d) {
-  const Quadratic circle = unit_tube(o, d);
+/// Tests the ray at its local closest points to the torus's circle, found by fixed-point iteration
+/// from the ray's points above or below the circle and from its intersection with the plane.
+Int4 hits_torus(float tube, const Vec3& o, const Lanes3& d) {
+  const Quadratic circle = tube_quadratic(o, d);
   const Float4 nearest = -circle.b / (circle.a + tiny);
   const Float4 off =
       square_root(larger(circle.b * circle.b - circle.a * circle.c, Float4{})) / (circle.a + tiny);
   Int4 result = {};
   for (Float4 t : {nearest - off, nearest + off, -o.z() / d.z}) {
     for (int turn = 0; turn < 3; ++turn)
-      t = closer(o, d, t);
+      t = next_closest(o, d, t);
     const Float4 beside = square_root(squared_distance_to_axis(o, d, t)) - 1;
     const Float4 z = o.z() + t * d.z;
     result |= (t > Float4{}) & (beside * beside + z * z < broadcast<Float4>(tube * tube));
@@ -121,23 +122,23 @@ Int4 meet_torus(float tube, const Vec3& o, const Lanes3& d) {
 
 } // namespace
 
-Int4 rays_meet(const Solid& solid, const Vec3& origin, const Lanes3& directions) {
+Int4 rays_hit(const Solid& solid, const Vec3& origin, const Lanes3& directions) {
   switch (solid.kind) {
   case SolidKind::Disk:
-    return meet_disk(origin, directions);
+    return hits_disk(origin, directions);
   case SolidKind::Box:
-    return meet_box(origin, directions);
+    return hits_box(origin, directions);
   case SolidKind::Cylinder:
-    return meet_cylinder(origin, directions);
+    return hits_cylinder(origin, directions);
   case SolidKind::Cone:
-    return meet_cone(origin, directions);
+    return hits_cone(origin, directions);
   case SolidKind::Torus:
-    return meet_torus(static_cast<float>(solid.tube), origin, directions);
+    return hits_torus(static_cast<float>(solid.tube), origin, directions);
   case SolidKind::WorldSphere:
   case SolidKind::Sphere:
     break;
   }
-  return ahead(unit_sphere(origin, directions).below());
+  return is_ahead(sphere_quadratic(origin, directions).below());
 }
 
 } // namespace haarlight::renderer::detail

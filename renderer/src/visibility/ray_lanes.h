@@ -1,6 +1,6 @@
 #pragma once
-// Which of four rays from one point meet a shape, in float: near enough for estimates of what it
-// hides, and many times quicker than rays one by one. <shape_canonical.h> has the exact answers.
+// Approximate intersection of four rays from one point with a shape, in float: accurate enough for
+// visible fractions, and many times faster than the exact intersection in shapes/solid.h.
 
 #include <renderer/shapes/shapes.h>
 
@@ -12,8 +12,8 @@ struct Lanes3 {
 };
 
 /// @param origin, directions in the solid's object frame; directions of any length
-/// @return all bits of a lane where the ray meets the canonical shape (no WorldSphere); wrong only
-///         within some 1e-4 of its outline, and beside a torus that the origin lies on
-Int4 rays_meet(const Solid& solid, const Vec3& origin, const Lanes3& directions);
+/// @return all bits of a lane set where the ray hits the canonical shape (not WorldSphere); errors
+///         occur only within about 1e-4 of the outline, and next to a torus that the origin lies on
+Int4 rays_hit(const Solid& solid, const Vec3& origin, const Lanes3& directions);
 
 } // namespace haarlight::renderer::detail

@@ -76,7 +76,7 @@ TEST_CASE("a perspective ray passes through what projects to its film point", "[
 
 TEST_CASE("orthographic rays are parallel and span the height", "[camera]") {
   CameraDescription description = oblique_view();
-  description.projection = Projection::Orthographic;
+  description.projection = CameraProjection::Orthographic;
   const Camera camera(description, 320, 180);
   const Vec3 forward = (description.to - description.from).normalized();
   const Ray top = camera.generate_ray(160, 0);
@@ -102,9 +102,9 @@ TEST_CASE("films hold what is put in and refuse impossible sizes", "[film]") {
   CHECK((film.color(5) == Rgb(1, 2, 3)).all());
   CHECK(film.rgb[17] == 3);
   CHECK(film.normal[13] == 1);
-  CHECK(film_size_problem(8192, 8192).empty());
-  CHECK(film_size_problem(8192, 8193).find("too large") != std::string::npos);
-  CHECK(film_size_problem(1LL << 40, 1LL << 40).find("too large") != std::string::npos);
-  CHECK(film_size_problem(0, 5).find("no area") != std::string::npos);
-  CHECK(film_size_problem(5, -1).find("no area") != std::string::npos);
+  CHECK(validate_film_size(8192, 8192).empty());
+  CHECK(validate_film_size(8192, 8193).find("too large") != std::string::npos);
+  CHECK(validate_film_size(1LL << 40, 1LL << 40).find("too large") != std::string::npos);
+  CHECK(validate_film_size(0, 5).find("no area") != std::string::npos);
+  CHECK(validate_film_size(5, -1).find("no area") != std::string::npos);
 }

@@ -1,7 +1,8 @@
 // Paths: furnaces, a brute-force path tracer, and the parts they are made of.
 
-#include "path/path_vertex.h"
+#include "path/emitters.h"
 #include "sampler_fixture.h"
+#include "samplers/basic_samplers.h"
 #include "temporary_folder.h"
 
 #include <renderer/path/path.h>
@@ -63,7 +64,7 @@ public:
     write_haar(material.haar, brdf::BrdfMaps(brdf::MeasuredBrdf(material.brdf), options));
     return add(material);
   }
-  void object(const Shape& shape, int material, const Transform& transform = {}) {
+  void object(const Shape& shape, int material, const AffineMap& transform = {}) {
     scene.objects.push_back({shape, transform, material});
   }
 
@@ -200,7 +201,7 @@ PathScene with_flat_lamps() {
   PathScene scene(0.1F);
   const int wall = scene.measured(0.6F);
   const int lamp = scene.lambert(0.5F, 2);
-  const Transform skewed = rotation(Eigen::Vector3d(1, 2, 3), 50).then(scaling({1, 0.5, 1.5}));
+  const AffineMap skewed = rotation(Eigen::Vector3d(1, 2, 3), 50).then(scaling({1, 0.5, 1.5}));
   scene.object(Plane{Vec3(0, -1, 0), Vec3::UnitY()}, wall);
   scene.object(Disk{Vec3(-0.6F, 1.8F, 0), Vec3(0.3F, -1, 0.2F), 0.8F}, lamp);
   scene.object(Box{Vec3(-0.4F, -0.4F, -0.4F), Vec3(0.4F, 0.4F, 0.4F)}, lamp,
@@ -306,7 +307,8 @@ TEST_CASE("directions to emitters have the density they claim, and weights add u
       if (loaded.shapes().intersect(leave(floor, to->direction), hit) && hit.object == to->object) {
         const float pdf = emitters.pdf(floor, to->direction, hit);
         const float other = lobe.pdf(to->direction);
-        most_off = std::max(most_off, std::abs(balance(pdf, other) + balance(other, pdf) - 1));
+        most_off = std::max(
+            most_off, std::abs(balance_heuristic(pdf, other) + balance_heuristic(other, pdf) - 1));
         claimed += 1 / static_cast<double>(pdf) / n;
       }
       const float z = 1 - 2 * points[i].x(); // uniform over the sphere

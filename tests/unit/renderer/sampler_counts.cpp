@@ -218,7 +218,7 @@ TEST_CASE("every sampler converges under a light of two pixels, random or Sobol"
 
 TEST_CASE("an unoccluded pixel is exactly the product's integral, whatever the directions") {
   SceneDescription description = fixture().scene("glossy", "spheres");
-  description.camera.projection = Projection::Orthographic;
+  description.camera.projection = CameraProjection::Orthographic;
   description.camera.from = Vec3(0, 1, 5);
   description.camera.height = 2.2;
   const LoadedScene scene(description, {}, SamplerKind::Product, true);

@@ -130,5 +130,5 @@ TEST_CASE("wais loses what thresholding leaves without density, and nothing else
     CHECK(std::abs(estimate.mean - reach.drawn) < 4.5 * error + 1e-3 * reach.drawn);
   }
   CHECK(lost > 1e-3);
-  CHECK(traits(SamplerKind::Wais).claim == SamplerClaim::Biased);
+  CHECK(traits(SamplerKind::Wais).bias == Bias::Biased);
 }

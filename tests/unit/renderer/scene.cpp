@@ -11,7 +11,7 @@ TEST_CASE("a scene says what its file says", "[scene]") {
   CHECK(scene.width == 256);
   CHECK(scene.height == 128);
   CHECK(scene.hash.size() == 16);
-  CHECK(scene.camera.projection == Projection::Perspective);
+  CHECK(scene.camera.projection == CameraProjection::Perspective);
   CHECK(scene.camera.from == Vec3(0, 0.5F, 6));
   CHECK(scene.camera.fov == 30);
   CHECK(scene.light.probe == disk.folder() + "/grace_probe.hdr");
@@ -54,7 +54,7 @@ TEST_CASE("the light's and the camera's other keys", "[scene]") {
   CHECK(scene.light.part == "1");
   CHECK(scene.light.rotate == -30);
   CHECK_FALSE(scene.light.background);
-  CHECK(scene.camera.projection == Projection::Orthographic);
+  CHECK(scene.camera.projection == CameraProjection::Orthographic);
   CHECK(scene.camera.height == Approx(2.2));
   CHECK(scene.camera.up == Vec3::UnitY());
 }

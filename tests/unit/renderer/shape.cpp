@@ -35,7 +35,7 @@ std::vector<Sample> samples() {
           {"fat torus", Torus{Vec3(0, 0, 0), Vec3(0, 1, 0), 1, 0.97F}, true, false}};
 }
 
-ShapeSet only(const Shape& shape, const Transform& transform = {}) {
+ShapeSet only(const Shape& shape, const AffineMap& transform = {}) {
   ShapeSet set;
   set.add(shape, transform);
   return set;
@@ -117,7 +117,7 @@ TEST_CASE("a ray that leaves a surface does not hit it again", "[shape]") {
   for (const Sample& sample : samples())
     for (const auto& place : places) {
       INFO(sample.name << " at scale " << place.scale);
-      const Transform transform =
+      const AffineMap transform =
           scaling(Vector3d::Constant(place.scale)).then(translation(place.offset));
       const ShapeSet set = only(sample.shape, transform);
       reference::Random random(3);

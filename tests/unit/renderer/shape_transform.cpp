@@ -23,7 +23,7 @@ Eigen::Affine3d eigen_map() {
   return map;
 }
 
-Transform our_map() {
+AffineMap our_map() {
   return rotation({1, 2, -0.5}, 0.7 * 180 / M_PI)
       .then(scaling({1.5, 0.6, -0.9}))
       .then(translation({0.3, -0.8, 0.5}));
@@ -33,10 +33,10 @@ Transform our_map() {
 
 TEST_CASE("steps compose in the order written", "[transform]") {
   const Eigen::Affine3d truth = eigen_map();
-  const Transform ours = our_map();
+  const AffineMap ours = our_map();
   CHECK((ours.linear - truth.linear()).norm() < 1e-14);
   CHECK((ours.offset - truth.translation()).norm() < 1e-14);
-  const Transform round_trip = ours.then(ours.inverse());
+  const AffineMap round_trip = ours.then(ours.inverse());
   CHECK((round_trip.linear - Eigen::Matrix3d::Identity()).norm() < 1e-14);
   CHECK(round_trip.offset.norm() < 1e-14);
 }
@@ -55,7 +55,7 @@ TEST_CASE("maps that flatten or leave the range of numbers are not usable", "[tr
   CHECK_FALSE(scaling({1e19, 1, 1}).usable());
   CHECK_FALSE(scaling({1e-19, 1, 1}).usable());
   CHECK_FALSE(translation({0, NAN, 0}).usable());
-  Transform flat;
+  AffineMap flat;
   flat.linear << 1, 2, 3, 2, 4, 6, 0, 0, 1;
   CHECK_FALSE(flat.usable());
 }

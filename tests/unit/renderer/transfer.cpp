@@ -2,7 +2,6 @@
 
 #include <renderer/film/render.h>
 #include <renderer/transfer/relight.h>
-#include <renderer/transfer/turned_light.h>
 
 #include <wavelet/base/error.h>
 #include <wavelet/base/parallel.h>
@@ -175,14 +174,14 @@ TEST_CASE("a view that varies starts as the picture, and moves highlights") {
 TEST_CASE("a light keeps its energy however it turns, and its map where it does not") {
   const SceneDescription scene = small_scene();
   const Light light(scene.light, SourceLookups().probe);
-  const TurnedLight turned(light, 32);
+  const RotatedLight turned(light, 32);
   const wavelet::Map map = light.map(32);
   const double mean = wavelet::map_mean(map).mean();
   for (const double angle : {0.0, 33.0, 170.0}) {
-    const wavelet::Map made = turned.map(turn_of(Eigen::Vector3d(angle, -angle, 2 * angle)));
+    const wavelet::Map made = turned.map(rotation_of(Eigen::Vector3d(angle, -angle, 2 * angle)));
     CHECK(wavelet::map_mean(made).mean() == Approx(mean).epsilon(0.005));
   }
-  const wavelet::Map still = turned.map(turn_of(Eigen::Vector3d::Zero()));
+  const wavelet::Map still = turned.map(rotation_of(Eigen::Vector3d::Zero()));
   double error = 0;
   for (std::size_t i = 0; i < map.rgb.size(); ++i)
     error += std::abs(static_cast<double>(still.rgb[i] - map.rgb[i]));

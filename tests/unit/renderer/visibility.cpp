@@ -114,28 +114,7 @@ TEST_CASE("an object's own visibility ends at its horizon", "[visibility]") {
   CHECK(result.wrong == 0);
   for (const int level : {0, 3, 6, 7}) {
     CHECK(trees.own(hit, level).mean[0] == Approx(0.5).epsilon(1e-4));
-    CHECK(trees.local(hit, level).mean[0] == Approx(0.25).epsilon(1e-4)); // π of 4π
   }
-}
-
-TEST_CASE("local visibility is the cosine's average over each square", "[visibility]") {
-  const ShapeSet set = both(pairs()[0]);
-  Hit hit = top_of_sphere();
-  hit.normal = Vec3(0.3F, 0.8F, -0.4F).normalized();
-  const Vec3 n = turned_light().to_light(hit.normal);
-  const Tree tree = VisibilityTrees(set, turned_light()).local(hit, 5);
-  constexpr int points = 16;
-  for (int row = 0; row < 32; ++row)
-    for (int column = 0; column < 32; ++column) {
-      float sum = 0;
-      for (int y = row * points; y < (row + 1) * points; ++y)
-        for (int x = column * points; x < (column + 1) * points; ++x) {
-          const Vec2 p((static_cast<float>(x) + 0.5F) / (32 * points),
-                       (static_cast<float>(y) + 0.5F) / (32 * points));
-          sum += std::max(0.0F, n.dot(wavelet::square_to_sphere(p)));
-        }
-      CHECK(tree.view().average(5, column, row)[0] == Approx(sum / (points * points)).margin(5e-4));
-    }
 }
 
 TEST_CASE("a torus is in its own way", "[visibility]") {
@@ -152,7 +131,6 @@ TEST_CASE("a torus is in its own way", "[visibility]") {
   CHECK(result.wrong < 40);
   CHECK(result.clear > 18000);
   CHECK(result.mean == Approx(result.rays).margin(2e-3));
-  CHECK(trees.local(hit, levels).mean[0] < 0.25F);
 }
 
 TEST_CASE("visibilities multiply to what is seen past all objects", "[visibility]") {

@@ -74,7 +74,7 @@ TEST_CASE("a camera shows things larger from nearer, or in a lower picture", "[v
   Orbit perspective(start);
   perspective.enlarge(4);
   CHECK(near(perspective.camera().from, {1, 0, 0.5F}));
-  start.projection = renderer::Projection::Orthographic;
+  start.projection = renderer::CameraProjection::Orthographic;
   start.height = 3;
   Orbit orthographic(start);
   orthographic.enlarge(4);

@@ -18,8 +18,8 @@ enum class Points {
 std::uint32_t hash_words(std::uint32_t a, std::uint32_t b);
 
 /// Fills `out` with points `first`, `first + 1`, … of a set in [0, 1)². Each key has its own
-/// scrambling and its own order, so that points of the same index in sets of different keys are
-/// independent: pairs of dimensions of one sample may be taken from different sets.
+/// scrambling and order, so that points of the same index in sets of different keys are
+/// independent: pairs of dimensions of one sample are taken from different sets.
 /// @param key identifies the set: hash of pixel, seed and dimension
 void fill_points(Points kind, std::uint32_t key, std::uint32_t first, std::span<Vec2> out);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The scene's distant light: its true radiance, and the trees that stand for it when sampling.
+// The scene's distant light: its radiance, and the trees that samplers use for it.
 
 #include <renderer/material/tree_table.h>
 #include <renderer/scene/scene.h>
@@ -13,8 +13,8 @@
 
 namespace haarlight::renderer {
 
-/// All directions are in the light's own frame: the probe's axes, turned against the world about +y
-/// by the scene's "rotate". With a tree alone, the tree is the truth.
+/// All directions are in the light's own frame: the probe's axes, rotated against the world about
+/// +y by the scene's "rotate". Without a probe the tree defines the radiance.
 class Light {
 public:
   /// @throws Error(Input) as the files' readers do
@@ -22,43 +22,42 @@ public:
 
   /// Radiance from a unit direction.
   Rgb radiance(const Vec3& w) const;
-  /// The same from many, as many as `out`.
+  /// The same for out.size() directions.
   void radiance(std::span<const Vec3> directions, std::span<Rgb> out) const;
 
-  /// Makes what samplers use, if not there yet: the world-frame tree; the distribution to draw
-  /// from.
-  void need_tree();
-  void need_distribution();
+  /// Creates data that samplers use, if missing: the world-frame tree; the sampling distribution.
+  void require_tree();
+  void require_distribution();
 
-  /// After need_tree().
+  /// Requires require_tree().
   const wavelet::TreeView& tree() const { return m_map->tree(0, 0); }
 
-  /// The picture it is looked up in, in the light's own frame, if there is one.
+  /// The probe, in the light's own frame, if there is one.
   const probe::Probe* probe() const { return m_probe ? &*m_probe : nullptr; }
 
-  /// The paper's table of rotated maps, if the scene names one.
+  /// The paper's table of rotated maps, if the scene has one.
   const TreeTable* rotated_table() const { return m_rotated ? &*m_rotated : nullptr; }
 
-  /// Draws directions in proportion to radiance, one for each point of [0, 1)², as many as `out`;
-  /// after need_distribution(). Densities in sr⁻¹.
+  /// Samples directions in proportion to luminance, one per point of [0, 1)². Densities in sr⁻¹.
+  /// Requires require_distribution().
   void sample(std::span<const Vec2> points, std::span<probe::LightSample> out) const;
   float pdf(const Vec3& w) const;
 
-  /// The probe's pixels as a distribution, after need_distribution(); null if there is no probe.
+  /// The distribution of the probe's pixels; null without a probe. Requires require_distribution().
   const probe::LightDistribution* distribution() const {
     return m_distribution ? &*m_distribution : nullptr;
   }
 
-  /// Average radiance over the squares of a map, in the light's own frame, of the probe or else of
-  /// the tree; never negative. No finer than the tree, or much finer than the probe.
-  /// @param most  pixels along a side at most, a power of two ≥ 4
-  /// @param least pixels along a side of a probe's map at least, a power of two ≥ 4
+  /// A map of average radiance, ≥ 0, in the light's own frame, of the probe or else of the tree; at
+  /// most as fine as the tree, or about as fine as the probe.
+  /// @param most  maximum pixels along a side, a power of two ≥ 4
+  /// @param least minimum pixels along a side of a probe's map, a power of two ≥ 4
   wavelet::Map map(int most, int least = 4) const;
 
   Vec3 to_world(const Vec3& w) const { return m_turned ? Vec3(m_to_world * w) : w; }
   Vec3 to_light(const Vec3& w) const { return m_turned ? Vec3(m_to_world.transpose() * w) : w; }
 
-  /// A sentence on how the probe was read, or empty.
+  /// How the probe was read, for reports; may be empty.
   const std::string& note() const { return m_note; }
 
 private:

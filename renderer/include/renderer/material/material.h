@@ -1,11 +1,11 @@
 #pragma once
-// One material of a scene, loaded: its true reflectance, and the trees that stand for it when
-// sampling.
+// One loaded material of a scene: its reflectance, and the trees that samplers use for it.
 
-#include <renderer/material/reflectance.h>
 #include <renderer/material/tree_table.h>
 #include <renderer/scene/scene.h>
 
+#include <brdf/analytic.h>
+#include <brdf/measured_brdf.h>
 #include <wavelet/product/adaptive_product.h>
 
 #include <memory>
@@ -13,9 +13,51 @@
 #include <span>
 
 namespace haarlight::renderer {
+struct Hit;
 
-/// What is not given as a file is made: trees from the measured table, or from the formula; with
-/// trees alone, they are the truth.
+/// A surface point; all directions in the light's frame.
+struct ShadingPoint {
+  Vec3 n;                     ///< unit normal, on the viewer's side
+  Vec3 wo;                    ///< unit direction to the viewer, n·wo > 0
+  ReflectionFrame reflection; ///< of n and wo
+  const Hit* hit = nullptr;   ///< the point in the world, if there are possible occluders
+};
+
+ShadingPoint shading_point(const Vec3& n, const Vec3& wo);
+
+class Reflectance {
+public:
+  virtual ~Reflectance() = default;
+
+  /// f_r(ω_o, ω)·max(0, n·ω), sr⁻¹, for many directions at one point.
+  virtual void evaluate(const ShadingPoint& point, std::span<const Vec3> directions,
+                        std::span<Rgb> out) const = 0;
+
+  /// The θ_r-only set of maps to build trees from; null if the reflectance is given by trees.
+  virtual std::unique_ptr<wavelet::MapSource> maps() const { return nullptr; }
+
+  /// The set with rolls, where it is cheap enough to build at load time; else null.
+  virtual std::unique_ptr<wavelet::MapSource> roll_maps() const { return nullptr; }
+
+  /// The analytic model with its own sampling routine; else null.
+  virtual const brdf::AnalyticBrdf* model() const { return nullptr; }
+};
+
+/// albedo/π.
+std::unique_ptr<Reflectance> lambert_reflectance(const Rgb& albedo);
+
+std::unique_ptr<Reflectance> measured_reflectance(brdf::MeasuredBrdf brdf);
+
+std::unique_ptr<Reflectance> analytic_reflectance(const brdf::AnalyticBrdf& model);
+
+/// Values of a θ_r-only set of trees, interpolated between neighbouring cells.
+std::unique_ptr<Reflectance> tree_reflectance(std::shared_ptr<const TreeTable> lobes);
+
+/// A point's θ_r in cells of a θ_r-only set; integers are the centres of cells.
+float theta_coordinate(const TreeTable& lobes, const ShadingPoint& point);
+
+/// Trees that are not given as files are built from the measured table or from the analytic model.
+/// If only trees are given, they define the reflectance.
 class Material {
 public:
   /// @throws Error(Input) as the files' readers do
@@ -24,46 +66,45 @@ public:
   /// f_r(ω_o, ω)·max(0, n·ω), sr⁻¹, for many directions at one point.
   void evaluate(const ShadingPoint& point, std::span<const Vec3> directions,
                 std::span<Rgb> out) const {
-    m_truth->evaluate(point, directions, out);
+    m_source_reflectance->evaluate(point, directions, out);
   }
 
-  /// The same for one.
+  /// The same for one direction.
   Rgb evaluate(const ShadingPoint& point, const Vec3& direction) const;
 
-  /// The formula, if the material is one with a sampling routine of its own.
-  const brdf::AnalyticBrdf* model() const { return m_truth->model(); }
+  /// The analytic model with its own sampling routine; null for other materials.
+  const brdf::AnalyticBrdf* model() const { return m_source_reflectance->model(); }
 
-  /// Makes what samplers use in place of the truth: the θ_r trees and their pyramid, if not there
-  /// yet.
-  void need_trees();
+  /// Builds the θ_r-only trees and their pyramid, if missing.
+  void require_trees();
 
-  /// Makes what sampling the reflectance alone uses: the trees, unless it has a routine of its own.
-  void need_lobe();
+  /// Builds the trees unless the reflectance has its own sampling routine.
+  void require_lobe();
 
-  /// The θ_r-only set seen from a point: for AdaptiveProduct. After need_trees().
+  /// The θ_r-only set rotated to a point, for AdaptiveProduct. Requires require_trees().
   wavelet::RotatedReflectance reflectance(const ShadingPoint& point) const;
 
-  /// The tree of the θ_r cell nearest to a point's, in its reflection frame. After need_trees().
+  /// The tree of the nearest θ_r cell, in the point's reflection frame. Requires require_trees().
   const wavelet::TreeView& lobe(const ShadingPoint& point) const;
 
-  /// Makes the set with rolls for a formula that has none; measured materials must name theirs.
-  void need_roll_table();
+  /// Builds the set with rolls of an analytic model; measured materials must name theirs.
+  void require_roll_table();
 
   /// The set with rolls, if there is one.
   const TreeTable* roll_table() const { return m_rolls ? &*m_rolls : nullptr; }
 
-  /// Radiance that it sends into all directions by itself.
+  /// Emitted radiance, the same in all directions.
   const Rgb& emission() const { return m_emission; }
 
   const std::string& name() const { return m_name; }
-  std::size_t pyramid_bytes() const { return m_pyramid ? m_pyramid->bytes() : 0; }
+  bool has_trees() const { return m_pyramid.has_value(); }
 
 private:
   std::string m_name;
   Rgb m_emission = Rgb::Zero();
   std::shared_ptr<const TreeTable> m_lobes; ///< θ_r only
   std::optional<TreeTable> m_rolls;
-  std::unique_ptr<Reflectance> m_truth;
+  std::unique_ptr<Reflectance> m_source_reflectance;
   std::optional<wavelet::Pyramid> m_pyramid;
 };
 

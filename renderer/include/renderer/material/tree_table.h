@@ -1,5 +1,5 @@
 #pragma once
-// The stored trees of one material or light, from a .haar file or made in memory.
+// The trees of one material or light, from a .haar file or built in memory.
 
 #include <wavelet/file/tree_set.h>
 #include <wavelet/transform/compress.h>
@@ -10,16 +10,16 @@
 
 namespace haarlight::renderer {
 
-/// Trees by column and row, whoever owns them. Movable; views stay valid.
+/// Trees by column and row. Movable; views stay valid.
 class TreeTable {
 public:
-  /// Maps a file.
-  /// @param check when its trees are checked: the thousands of a table are better left until used
-  /// @throws Error(Input) if it is broken, or not of the kind wanted
+  /// Memory-maps a file.
+  /// @param check when trees are validated; for tables of thousands of trees, better on first use
+  /// @throws Error(Input) if it is malformed or of another kind
   TreeTable(const std::string& path, wavelet::SetKind kind,
             wavelet::Check check = wavelet::Check::Everything);
 
-  /// Makes and compresses every map of a source, with default options.
+  /// Computes and compresses every map of a source, with default options.
   explicit TreeTable(const wavelet::MapSource& source);
 
   const wavelet::SetInfo& info() const { return m_info; }
@@ -27,7 +27,7 @@ public:
   /// All trees, column fastest. @throws as tree()
   std::vector<wavelet::TreeView> trees() const;
 
-  /// @throws Error(Input) if it is of a file, unchecked so far, and broken
+  /// @throws Error(Input) on first use of a malformed tree of a file
   const wavelet::TreeView& tree(int column, int row) const {
     if (m_file)
       return m_file->tree(column, row);

@@ -1,35 +1,35 @@
 #pragma once
 // Global illumination by path tracing: L = L_e + L_dir + L_ind, the paper's eqs. 1–2.
 //
-// One path starts at a pixel's point for each of RenderOptions::spp. At its first vertex the
-// distant light is sampled by the chosen sampler, prepared once for all paths of the pixel. With
-// SamplerKind::Mis, and at every later vertex, which has but one sample, it is sampled by itself
-// instead and by directions the path may go on in. Emitters (spheres that stay spheres, disks,
-// boxes) are sampled as well as met by the path; whatever two techniques can find counts by the
-// balance heuristic (Veach and Guibas 1995). Paths go on by the reflectance, from the third vertex
-// on by Russian roulette. With a sampler that is unbiased the result is.
+// RenderOptions::spp paths start at the point seen by a pixel. At their first vertex the distant
+// light is sampled by the chosen sampler, prepared once for all paths of the pixel. With
+// SamplerKind::Mis, and at all later vertices, which take one sample each, light samples and BSDF
+// samples are combined instead. Emitters (spheres under similarity maps, disks, boxes) are sampled
+// and also hit by paths. Combined techniques use the balance heuristic (Veach and Guibas 1995).
+// Paths continue by BSDF samples, with Russian roulette from the third vertex on. The result is
+// unbiased if the sampler is.
 
 #include <renderer/film/render.h>
 
 namespace haarlight::renderer {
 
 struct PathOptions {
-  int depth = 0; ///< surface points on a path that are lit, at most; 1 = direct light only, 0 = any
-                 ///< number
-  int light_samples = 1; ///< samples of light at the first vertex for each path, above 0
+  int depth = 0; ///< maximum number of vertices whose direct light counts; 1 = direct light only,
+                 ///< 0 = unlimited
+  int light_samples = 1; ///< light samples at the first vertex per path, > 0
 };
 
-/// What the scene must be loaded with for paths, besides what the sampler needs: of SamplerNeed.
+/// Data that paths need besides those of the sampler: of SamplerNeed.
 inline constexpr unsigned path_needs = NeedsLightDistribution | NeedsLobes;
 
-/// Renders as render() does; the estimator is Unbiased whatever the options say. `samples` are
-/// paths, pdf_sum is that of the sampler's directions at the first vertex, and `variance` that of
-/// whole paths.
+/// Renders as render() does, always with Estimator::Unbiased. In the film, `samples` counts paths,
+/// `pdf_sum` sums the pdfs of the sampler's directions at the first vertex, and `variance` is that
+/// of whole paths.
 /// @param scene loaded for options.sampler and path_needs
 RenderResult render_paths(const LoadedScene& scene, const RenderFactories& factories,
                           const RenderOptions& options, const PathOptions& path, int width,
                           int height, const RenderProgress& progress = {});
-/// The same with factories of its own.
+/// The same with new factories.
 RenderResult render_paths(const LoadedScene& scene, const RenderOptions& options,
                           const PathOptions& path, int width, int height,
                           const RenderProgress& progress = {});

@@ -1,5 +1,5 @@
 #pragma once
-// Samplers of light directions at a shading point: one small interface, one file each.
+// The interface of samplers of light directions at a shading point.
 
 #include <renderer/film/points.h>
 #include <renderer/light/light.h>
@@ -17,7 +17,7 @@ namespace haarlight::renderer {
 class LoadedScene;
 
 /// The technique that drew a sample. A sampler with two techniques draws a fixed number of samples
-/// with each, so that the estimate varies within techniques only.
+/// with each, so that the variance of the estimate is the sum of those of the techniques.
 enum class Technique : std::uint8_t {
   First,
   Second,
@@ -25,20 +25,20 @@ enum class Technique : std::uint8_t {
 };
 inline constexpr std::size_t random_techniques = 2; ///< First and Second
 
-/// Weights of Technique::First at a direction, those of Second being the complements to 1.
+/// MIS weights of Technique::First in a direction; those of Second are the complements to 1.
 struct FirstWeights {
-  float balance = 1;   ///< n1 p1 / (n1 p1 + n2 p2), the balance heuristic's
-  float heuristic = 1; ///< that of the heuristic by which samples count
+  float balance = 1;   ///< of the balance heuristic, n1 p1 / (n1 p1 + n2 p2)
+  float heuristic = 1; ///< of the sampler's heuristic
 };
 
-/// A direction and the density it counts with. For several techniques at once this is their mean
-/// density, weighted by their numbers of samples, which makes f/pdf the balance heuristic; for
-/// resampled directions it is the reciprocal of the weight they count with.
+/// A direction and its density. For several techniques this is their mean density, weighted by
+/// their numbers of samples, so that f/pdf is the balance heuristic; for resampled directions it is
+/// the reciprocal of their weight.
 struct DirectionSample {
   Vec3 direction; ///< unit, in the light's frame
-  float pdf = 0;  ///< sr⁻¹; 0 = no direction could be drawn, it contributes nothing
+  float pdf = 0;  ///< sr⁻¹; 0 = no direction could be drawn, the sample contributes 0
   Technique technique = Technique::First;
-  FirstWeights first = {}; ///< used where a technique drew a single sample
+  FirstWeights first = {}; ///< for the variance if a technique drew a single sample
 };
 
 /// Variances and covariance of two sums over samples, Σ w v and Σ w: w is the luminance of a
@@ -66,76 +66,76 @@ struct SumVariance {
 struct PointSource {
   Points kind = Points::Sobol;
   std::uint32_t key = 0;   ///< of the pixel and the seed
-  std::uint32_t first = 0; ///< index of the first sample, for later passes over the same pixel
+  std::uint32_t first = 0; ///< index of the first sample, > 0 in later passes
 
   void fill(std::uint32_t dimension, std::span<Vec2> out) const {
     fill_points(kind, hash_words(key, dimension), first, out);
   }
 };
 
-/// Draws directions for one point after another; each thread has its own.
+/// Samples directions at one point after another; one per thread.
 class Sampler {
 public:
   virtual ~Sampler() = default;
 
-  /// Forgets the points before: what comes depends on the points to come alone.
-  virtual void forget() {}
+  /// Clears cached state.
+  virtual void reset() {}
 
-  /// Turns to a point, best one near the last. What it refers to must live until the next call.
+  /// Sets the shading point; fastest if near the previous one. Arguments must live until the next
+  /// call.
   virtual void prepare(const ShadingPoint& point, const Material& material) = 0;
 
   /// Draws out.size() directions for the point.
   virtual void sample(const PointSource& points, std::span<DirectionSample> out) = 0;
 
-  /// Density of the directions that sample() draws `count` at a time, at any direction, sr⁻¹; of
-  /// resampled directions, of their candidates.
+  /// Density of sample() with `count` samples at any direction, sr⁻¹; for resampled directions,
+  /// that of the candidates.
   virtual float pdf(const Vec3& direction, std::size_t count) const = 0;
 
-  /// The radiance that the directions of the last sample() stand for: the light's own, unless they
-  /// are lamps in place of regions.
+  /// The radiance of the directions of the last sample(): the light's, unless they represent
+  /// regions.
   virtual void radiance(const Light& light, std::span<const Vec3> directions,
                         std::span<Rgb> out) const {
     light.radiance(directions, out);
   }
 
-  /// The point's unshadowed radiance as this sampler's product knows it, L_ns of the paper's eq. 8;
-  /// nothing for samplers that have no product.
+  /// The point's unshadowed reflected radiance by the sampler's product, L_ns of the paper's eq. 8;
+  /// none for samplers without a product.
   virtual std::optional<Rgb> unshadowed() const { return std::nullopt; }
 
-  /// The part of the sums' variance that the samples of the last sample() have in common, besides
-  /// that of independent samples: resampled ones share a pool of candidates.
+  /// The variance of the sums in excess of that of independent samples, for the last sample():
+  /// resampled directions share a pool of candidates.
   /// @param visible of each sample, not 0 if it is unoccluded
   virtual SumVariance shared_variance(std::span<const std::uint8_t> /*visible*/) const {
     return {};
   }
 
-  /// Leaves of the product at hand, 0 without one.
+  /// Leaves of the current product, 0 without one.
   virtual std::size_t leaves() const { return 0; }
 };
 
 struct SamplerOptions {
-  wavelet::AdaptiveOptions product = {.variance_bound =
-                                          0}; ///< a bound of 0 goes by the count of
-                                              ///< samples, see default_variance_bound()
-  std::size_t count = 0; ///< samples that a pass is likely to ask for; what depends on the count is
-                         ///< then made beforehand
-  int candidates = 16;   ///< of resampling samplers for each sample, at most; above 0
-  int regions = 512;     ///< that two-stage divides the light into, at most; 4 or more
-  int pps_samples = 128; ///< BRDF values that `pps` begins with, ≥ 1
+  wavelet::AdaptiveOptions product = {.variance_bound = 0}; ///< a bound of 0 means
+                                                            ///< default_variance_bound()
+  std::size_t count = 0; ///< expected samples per pass; data that depend on it are then computed
+                         ///< beforehand
+  int candidates = 16;   ///< per sample of resampling samplers, at most; > 0
+  int regions = 512;     ///< of the partition of two-stage, at most; ≥ 4
+  int pps_samples = 128; ///< initial BRDF values of pps, ≥ 1
 };
 
-/// What products are refined to by default. The variance that leaves add falls as their number n
-/// rises, like k/n, beside a part v that stays. With the time of N samples as that of r·N leaves,
-/// (v + k/n)(r·N + n) is least at k/n = √(k·v/(r·N)): the bound goes by 1/√N.
-/// @param count samples that are drawn from one product, > 0
+/// The default variance bound of products. The variance due to n leaves is about k/n, in addition
+/// to a constant part v. If N samples take the time of r·N leaves, variance × time, (v + k/n)(r·N +
+/// n), is minimal at k/n = √(k·v/(r·N)): the bound is proportional to 1/√N.
+/// @param count samples drawn from one product, > 0
 float default_variance_bound(std::size_t count);
 
-/// What the samplers of all threads share, made once for a scene; makes each thread's own.
+/// Data shared by the samplers of all threads; creates each thread's sampler.
 class SamplerFactory {
 public:
   virtual ~SamplerFactory() = default;
 
-  /// @param count samples that each point is likely to be asked for, > 0
+  /// @param count expected samples per point, > 0
   virtual std::unique_ptr<Sampler> make(std::size_t count) const = 0;
 };
 

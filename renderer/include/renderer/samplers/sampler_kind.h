@@ -1,5 +1,5 @@
 #pragma once
-// The samplers there are, by name: what each is, and what it wants made before it.
+// The list of samplers: their names and the data they need.
 
 #include <cstdint>
 #include <optional>
@@ -30,29 +30,30 @@ enum class SamplerKind : std::uint8_t {
   ProductVisibility
 };
 
-/// What a sampler wants made when a scene is loaded; bits.
+/// Data that a sampler needs when a scene is loaded; bits.
 enum SamplerNeed : unsigned {
   NeedsNothing = 0,
   NeedsLightTree = 1,         ///< the light's tree in the world's frame
-  NeedsLightDistribution = 2, ///< the probe's pixels as a distribution
+  NeedsLightDistribution = 2, ///< the distribution of the probe's pixels
   NeedsMaterialTrees = 4,     ///< the θ_r-only sets
-  NeedsTables = 8,            ///< the paper's tables, which the scene must name
-  NeedsLobes = 16 ///< the θ_r-only sets of materials that have no sampling routine of their own
+  NeedsTables = 8,            ///< the paper's tables, named by the scene
+  NeedsLobes = 16 ///< the θ_r-only sets of materials without their own sampling routine
 };
 
-/// What samplers return as density.
-enum class SamplerClaim : std::uint8_t {
-  Unbiased, ///< directions have the density they count with, or count so in expectation
-  Biased    ///< as published: lamps stand for regions, or directions are overlooked
+/// Whether the mean of the estimate is the integral.
+enum class Bias : std::uint8_t {
+  Unbiased, ///< densities are exact, or in expectation
+  Biased    ///< as published: directions represent regions, or some directions have no density
 };
 
 struct SamplerTraits {
   SamplerKind kind;
   const char* name;    ///< as on the command line
-  const char* summary; ///< what it draws from, and whose it is
+  const char* summary; ///< the density, and its source
   unsigned needs;      ///< of SamplerNeed
-  SamplerClaim claim = SamplerClaim::Unbiased;
-  bool follows_product = false; ///< knows L_ns of the paper's eq. 8, and directions follow it
+  Bias bias = Bias::Unbiased;
+  bool follows_product =
+      false; ///< has L_ns of the paper's eq. 8, and directions follow the product
 };
 
 /// All samplers in the order of SamplerKind.

@@ -2,11 +2,11 @@
 // From film coordinates to rays.
 
 #include <renderer/scene/scene.h>
-#include <renderer/shapes/ray.h>
+#include <renderer/shapes/shape.h>
 
 namespace haarlight::renderer {
 
-/// A pinhole or a parallel projection with square pixels. Film coordinates are in pixels: (0, 0) is
+/// A pinhole or orthographic camera with square pixels. Film coordinates are in pixels: (0, 0) is
 /// the top left corner of the picture, x runs to the right and y down, so the centre of pixel (x,
 /// y) is (x + 0.5, y + 0.5).
 class Camera {
@@ -16,14 +16,14 @@ public:
   Camera(const CameraDescription& description, int width, int height);
 
   /// The ray of a film point. Perspective rays start at `from`, orthographic ones on the plane
-  /// through `from` that faces `to`; what lies behind is not seen.
+  /// through `from` perpendicular to the view.
   Ray generate_ray(float x, float y) const;
 
 private:
-  Projection m_projection;
+  CameraProjection m_projection;
   Vec3 m_from;
   Vec3 m_forward;
-  Vec3 m_corner; // of the film from the centre of view: top left
+  Vec3 m_corner; // top left of the film, relative to `from`
   Vec3 m_across; // one pixel to the right
   Vec3 m_down;   // one pixel down
 };

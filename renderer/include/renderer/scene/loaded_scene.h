@@ -1,5 +1,5 @@
 #pragma once
-// A scene with everything its description names, ready to render.
+// A scene with its files loaded, ready to render.
 
 #include <renderer/light/light.h>
 #include <renderer/material/material.h>
@@ -13,20 +13,20 @@
 
 namespace haarlight::renderer {
 
-/// How the sources are looked up where they are the truth.
+/// Interpolation of measured reflectances and of the probe.
 struct SourceLookups {
   brdf::Lookup brdf = brdf::Lookup::Trilinear;
   probe::Lookup probe = probe::Lookup::Nearest;
 };
 
-/// Owns shapes, materials and light. Not copied: products point into it.
+/// Owns shapes, materials and light. Not copyable: products point into it.
 class LoadedScene {
 public:
-  /// Opens the files a description names and makes what `sampler` and `unshadowed_product` need.
-  /// @param unshadowed_product whether the estimator needs L_ns of a product whatever the sampler
-  /// @param further what the integrator needs besides, of SamplerNeed
-  /// @throws Error(Input) if a file is broken, of the wrong kind, or one that the sampler needs is
-  /// not named
+  /// Opens the files of a description and computes the data that `sampler` needs.
+  /// @param unshadowed_product whether the estimator needs L_ns of a product for any sampler
+  /// @param further data that the integrator needs in addition, of SamplerNeed
+  /// @throws Error(Input) if a file is malformed or of the wrong kind, or if a file that the
+  /// sampler needs is not named
   LoadedScene(const SceneDescription& description, const SourceLookups& lookups,
               SamplerKind sampler, bool unshadowed_product, unsigned further = NeedsNothing);
   LoadedScene(const LoadedScene&) = delete;
@@ -41,7 +41,7 @@ public:
   }
   const std::vector<Material>& materials() const { return m_materials; }
 
-  /// CPU time that making what the sampler needs took, reading files apart.
+  /// CPU seconds spent on the sampler's data, without reading files.
   double preparation_seconds() const { return m_preparation_seconds; }
 
 private:

@@ -1,8 +1,8 @@
 #pragma once
-// A scene in words: which files, which shapes, which camera, as plain values. Nothing is loaded
-// yet. renderer/SCENE.md documents the file format; <renderer/scene/scene_file.h> reads it.
+// A scene as plain values: file names, shapes, camera. No
+// files are loaded.
 
-#include <renderer/scene/transform.h>
+#include <renderer/scene/affine_map.h>
 #include <renderer/shapes/shape.h>
 
 #include <brdf/analytic.h>
@@ -13,14 +13,14 @@
 
 namespace haarlight::renderer {
 
-enum class Projection {
+enum class CameraProjection {
   Perspective, ///< rays from one point
   Orthographic ///< parallel rays
 };
 
-/// Looks from `from` to `to`; `up` points upwards in the picture once made perpendicular.
+/// Looks from `from` to `to`; the projection of `up` points upwards in the picture.
 struct CameraDescription {
-  Projection projection = Projection::Perspective;
+  CameraProjection projection = CameraProjection::Perspective;
   Vec3 from = Vec3(0, 0, 1);
   Vec3 to = Vec3::Zero();  ///< not `from`
   Vec3 up = Vec3::UnitY(); ///< not parallel to the view
@@ -28,21 +28,22 @@ struct CameraDescription {
   double height = 2;       ///< orthographic: height of the picture, world units, > 0
 };
 
-/// Light from infinitely far, by direction. At least one of `probe`, `haar`, `table` is given.
+/// Light from infinitely far. At least one of `probe`, `haar`, `table` is given.
 struct LightDescription {
   std::string probe;            ///< image file, or empty
   std::string haar;             ///< tree of the one world-frame map, or empty
   std::string table;            ///< trees of the table of rotated maps, or empty
-  std::string mapping = "auto"; ///< how `probe` shows the sphere: auto, angular, latlong,
-                                ///< mirrorball or octahedral
+  std::string mapping = "auto"; ///< of `probe`: auto, angular, latlong, mirrorball or
+                                ///< octahedral
   std::string layer;            ///< layer of `probe` (OpenEXR), or empty
   std::string part;             ///< part (OpenEXR) or page (TIFF) of `probe`, or empty
-  double rotate = 0; ///< degrees the light is turned about world +y, right-handed: the light from
-                     ///< ω is what the probe shows at ω turned by −rotate
-  bool background = true; ///< the light itself is seen where no object is; else black
+  double rotate = 0; ///< rotation of the light about world +y, degrees, right-handed: the light
+                     ///< from ω is the probe's at ω rotated by −rotate
+  bool background = true; ///< pixels without a hit show the light; else black
 };
 
-/// At least one of the files, or `lambert` or `model` alone, or none of them: black. Any may shine.
+/// At least one of the files, or only `lambert` or `model`, or none of them: black. Any may be
+/// emissive.
 struct MaterialDescription {
   std::string name;
   std::string brdf;           ///< MERL file, or empty
@@ -50,16 +51,16 @@ struct MaterialDescription {
   std::string table;          ///< trees of the set with rolls, or empty
   std::optional<Rgb> lambert; ///< albedo in [0, 1]: f_r = lambert/π
   std::optional<brdf::AnalyticBrdf> model;
-  Rgb emission = Rgb::Zero(); ///< radiance into all directions, on the side it is seen from; ≥ 0
+  Rgb emission = Rgb::Zero(); ///< radiance in all directions, on both sides; ≥ 0
 };
 
 struct ObjectDescription {
   Shape shape;
-  Transform transform; ///< applied to the shape where it stands
+  AffineMap transform; ///< applied to the shape in world space
   int material = 0;    ///< index into SceneDescription::materials
 };
 
-/// File names are as the scene file gives them, put behind its folder unless they are absolute.
+/// File names are relative to the scene file's folder unless they are absolute.
 struct SceneDescription {
   std::string path; ///< of the scene file
   std::string hash; ///< of its bytes, for provenance
@@ -69,8 +70,17 @@ struct SceneDescription {
   LightDescription light;
   std::vector<MaterialDescription> materials; ///< in the file's order
   std::vector<ObjectDescription> objects;     ///< in the file's order, as hits number them
-  std::vector<std::string> object_names; ///< of the objects in order, all different but for empty
-                                         ///< ones; may be shorter than `objects`
+  std::vector<std::string> object_names;      ///< of the objects in order, unique or empty; may be
+                                              ///< shorter than `objects`
 };
+
+/// Reads and checks a scene file; the files it names are not opened. renderer/SCENE.md documents
+/// the format.
+/// @throws Error(Input) naming the place in the scene (as in `objects[2].radius`) and the expected
+///         value, for: a file that cannot be read; a JSON syntax error (with byte, line and
+///         column); a key that is unknown (with the nearest known key), missing or given twice; a
+///         wrong type; a number out of its range; a direction of zero length; an unknown material;
+///         a degenerate camera; a film that is too large
+SceneDescription load_scene(const std::string& path);
 
 } // namespace haarlight::renderer

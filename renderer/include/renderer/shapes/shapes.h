@@ -1,14 +1,12 @@
 #pragma once
-// All shapes of a scene in flat arrays, and the two questions rays ask of them.
+// All shapes of a scene in flat arrays, with ray intersection.
 //
-// Every finite shape becomes a canonical one (unit sphere, unit disk, cube, …) under one affine
-// map, which holds both its own placement and its transform; spheres that stay spheres and planes
-// are kept in world coordinates. A ray is first held against bounding spheres, four at a time in
-// float; what passes is intersected in double. See <renderer/shapes/ray.h> for how a ray leaves a
-// surface. Cost grows linearly with the number of shapes.
+// Every finite shape is a canonical one (unit sphere, unit disk, cube, …) under an affine map that
+// combines its placement and its transform; spheres under similarity maps and planes are kept in
+// world coordinates. A ray is tested against bounding spheres in float, four at a time; candidates
+// are intersected in double. Cost is linear in the number of shapes.
 
-#include <renderer/scene/transform.h>
-#include <renderer/shapes/ray.h>
+#include <renderer/scene/affine_map.h>
 #include <renderer/shapes/shape.h>
 #include <wavelet/base/lanes.h>
 
@@ -34,12 +32,12 @@ struct Solid {
   double tube = 0;                                  ///< of a torus, in (0, 1)
   Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< of a sphere around it, world
   double radius = 0;
-  Transform to_object;
-  Transform to_world;
+  AffineMap to_object;
+  AffineMap to_world;
   int object = -1;
 };
 
-/// Bounding spheres of four solids, padded for the rounding of float.
+/// Bounding spheres of four solids, enlarged for rounding in float.
 struct BoundBatch {
   Float4 x = {};
   Float4 y = {};
@@ -55,27 +53,27 @@ struct WorldPlane {
 
 } // namespace detail
 
-/// Built once, then asked from any number of threads.
+/// Thread-safe once built.
 class ShapeSet {
 public:
   /// @param shape     obeys the ranges in <renderer/shapes/shape.h>
-  /// @param transform applied to the shape where it stands; usable()
-  /// @return the object index its hits will carry: 0, 1, 2, …
-  int add(const Shape& shape, const Transform& transform = {});
+  /// @param transform applied to the shape in world space; usable()
+  /// @return the object index of its hits: 0, 1, 2, …
+  int add(const Shape& shape, const AffineMap& transform = {});
 
   int size() const { return static_cast<int>(m_solids.size() + m_planes.size()); }
 
   /// The nearest hit with 0 < t < min(ray.t_max, 1e30); false and `hit` untouched if there is none.
   bool intersect(const Ray& ray, Hit& hit) const;
 
-  /// Whether anything is hit with 0 < t < min(ray.t_max, 1e30): answers as intersect() does,
-  /// sooner.
+  /// Whether anything is hit with 0 < t < min(ray.t_max, 1e30); the same result as intersect(),
+  /// faster.
   bool occluded(const Ray& ray) const;
 
-  /// Whether light on an object may be in another's shadow or its own.
+  /// Whether an object may be shadowed by another object or by itself.
   bool may_occlude(int object) const;
 
-  /// What rays are held against: the shapes that are finite, and the planes.
+  /// The finite shapes and the planes.
   const std::vector<detail::Solid>& solids() const { return m_solids; }
   const std::vector<detail::WorldPlane>& planes() const { return m_planes; }
 

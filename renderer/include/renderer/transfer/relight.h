@@ -1,10 +1,12 @@
 #pragma once
-// Pictures from stored transfer: inner products of each pixel's tree with the one factor that
-// varies. <renderer/transfer/transfer.h> makes the trees.
+// Relighting: pictures as inner products of each pixel's stored transfer with the varying factor.
+// <renderer/transfer/transfer.h> builds the trees.
 
 #include <renderer/film/film.h>
+#include <renderer/light/light.h>
 #include <renderer/transfer/transfer.h>
 
+#include <probe/probe_maps.h>
 #include <wavelet/file/packed_set.h>
 
 #include <memory>
@@ -13,11 +15,30 @@
 #include <vector>
 
 namespace haarlight::renderer {
+/// Rotation about +y by yaw, then about +x by pitch, then about +z by roll, fixed world axes,
+/// right-handed, degrees. Yaw alone equals the scene's "rotate".
+Eigen::Matrix3f rotation_of(const Eigen::Vector3d& yaw_pitch_roll);
 
-/// A transfer file in memory, of either form.
+/// A light's map under rotations.
+class RotatedLight {
+public:
+  /// @param resolution pixels along a side of the maps, a power of two ≥ 4
+  RotatedLight(const Light& light, int resolution);
+
+  /// The light under a rotation applied after the scene's own, as a map in the light's original
+  /// frame.
+  wavelet::Map map(const Eigen::Matrix3f& turn) const;
+
+private:
+  int m_resolution;
+  Eigen::Matrix3f m_placed; ///< from the light's frame to the world
+  probe::RotatableMap m_level;
+};
+
+/// A transfer file, mapped or packed.
 class Transfer {
 public:
-  /// @throws Error(Input) if it is broken, or holds no transfer
+  /// @throws Error(Input) if it is malformed or not a transfer file
   explicit Transfer(const std::string& path);
 
   int width() const { return m_set.info().columns; }   ///< of the film, pixels
@@ -25,13 +46,13 @@ public:
   int resolution() const { return m_set.info().size; } ///< pixels along a side of the trees
   const std::string& path() const { return m_set.path(); }
   const Provenance& provenance() const { return m_set.info().provenance; }
-  /// What varies, as on the command line of the program that built it.
+  /// The varying factor in the form of variation_text().
   std::string varying_text() const { return provenance().get("vary"); }
-  /// Base name of the scene it was made of.
+  /// Base name of its scene file.
   std::string scene_name() const { return provenance().get("scene"); }
 
-  /// What varies in the scene it was made of.
-  /// @throws Error(Input) if this is another scene, by its hash
+  /// The varying factor.
+  /// @throws Error(Input) if the scene's hash is not the one stored
   Variation variation(const SceneDescription& scene) const;
 
   /// Trees by pixel, row 0 first.
@@ -42,40 +63,39 @@ private:
   std::vector<wavelet::TreeView> m_trees;
 };
 
-/// What the varying factor is changed to. Members that do not concern it are left alone.
+/// A change of the varying factor. Members that do not apply to it are ignored.
 struct Change {
-  Eigen::Vector3d rotate = Eigen::Vector3d::Zero(); ///< light: yaw, pitch, roll as in turn_of()
-  Vec3 move = Vec3::Zero(); ///< object: from its place in the scene, world; view: the eye likewise
+  Eigen::Vector3d rotate = Eigen::Vector3d::Zero(); ///< light: yaw, pitch, roll as in rotation_of()
+  Vec3 move = Vec3::Zero(); ///< object or eye: displacement from its position in the scene, world
 };
 
-/// Makes one picture after another of a transfer; see the functions below for which.
+/// Computes pictures from a transfer file.
 class Relighter {
 public:
   virtual ~Relighter() = default;
-  /// Pixels alone: the film's other arrays stay 0. The same for any number of threads.
+  /// Sets pixel colours only: the film's other arrays stay 0.
   virtual Film make(const Change& change) = 0;
 };
 
 /// @param transfer, scene must outlive the result
-/// @param scene    the transfer's own but for the varying factor, which may name other files
-/// @throws Error(Input) if that cannot be read
+/// @param scene    as stored, except that the varying factor may name other files
+/// @throws Error(Input) if those cannot be read
 std::unique_ptr<Relighter> make_relighter(const Transfer& transfer, const SceneDescription& scene,
                                           const Variation& variation);
 
-/// The light turns, or is another: inner products with its coefficients. Background pixels show it
-/// itself.
+/// The light is rotated or replaced: inner products with its coefficients. Background pixels show
+/// the light.
 std::unique_ptr<Relighter> light_relighter(const Transfer& transfer, const SceneDescription& scene);
 
-/// One object moves and its shadows with it: of each tree what the object hides is left out, found
-/// for a sphere by descending where the edge of its circle goes, and for other shapes by the inner
-/// product with its visibility. The object itself is drawn where it comes to stand, lit by the
-/// scene's light as far as its neighbours let it through.
+/// One object and its shadows move: the occluded part of each tree is subtracted, for a sphere by a
+/// descent along the edge of its cap, for other shapes by the inner product with the visibility.
+/// The object itself is shaded by the scene's light with the shadows of the other objects.
 std::unique_ptr<Relighter> object_relighter(const Transfer& transfer, const SceneDescription& scene,
                                             const Variation& variation);
 
-/// One material is another, or all points are seen from another eye: products of the trees with
-/// reflectances that are looked up square by square. The points stay those of the transfer's film,
-/// so that what moves with the eye are highlights; points that turn their back to it are black.
+/// One material is replaced, or all points are seen from another eye: products of the trees with
+/// reflectances evaluated per square. The points stay those of the transfer's film, so that only
+/// highlights move with the eye; points facing away from it are black.
 std::unique_ptr<Relighter> reflectance_relighter(const Transfer& transfer,
                                                  const SceneDescription& scene,
                                                  const Variation& variation);
