@@ -21,29 +21,54 @@ public:
   /// @param size   pixels along a side, a power of two
   /// @param theta  cells of θ_r
   /// @param rolls  cells of φ over the full circle, all stored; 1 = φ is 0
-  explicit LambertMaps(const Rgb& albedo, int size = 64, int theta = 64, int rolls = 1);
+  LambertMaps(const Rgb& albedo, int size, int theta, int rolls) : m_albedo(albedo) {
+    m_info.kind = wavelet::SetKind::Brdf;
+    m_info.size = size;
+    m_info.columns = theta;
+    m_info.rows = rolls;
+    m_info.rolls = rolls;
+    m_info.cosine = true;
+    m_info.units = "sr^-1";
+  }
 
   const wavelet::SetInfo& info() const override { return m_info; }
-  wavelet::Map make(int column, int row) const override;
+
+  wavelet::Map make(int column, int row) const override {
+    const float theta_r =
+        (static_cast<float>(column) + 0.5F) * 0.5F * pi / static_cast<float>(m_info.columns);
+    const float phi = m_info.rolls == 1 ? 0.0F
+                                        : (static_cast<float>(row) + 0.5F) * 2.0F * pi /
+                                              static_cast<float>(m_info.rolls);
+    Vec3 n = Vec3::Zero();
+    float sine_theta = 0;
+    sine_cosine(theta_r, sine_theta, n.z());
+    sine_cosine(phi, n.y(), n.x());
+    n.head<2>() *= sine_theta;
+    wavelet::Map map(m_info.size);
+    for (int y = 0; y < map.size; ++y)
+      for (int x = 0; x < map.size; ++x)
+        map.set(x, y, m_albedo / pi * average_cosine(n, x, y, map.size));
+    return map;
+  }
 
 private:
+  /// Average of max(0, n·ω) over a pixel.
+  static float average_cosine(const Vec3& n, int x, int y, int size) {
+    constexpr int taps = 4; // along a pixel's side; the only edge is the horizon
+    const float step = 1.0F / static_cast<float>(size * taps);
+    float sum = 0;
+    for (int j = 0; j < taps; ++j)
+      for (int i = 0; i < taps; ++i) {
+        const Vec2 p((static_cast<float>(x * taps + i) + 0.5F) * step,
+                     (static_cast<float>(y * taps + j) + 0.5F) * step);
+        sum += std::max(0.0F, n.dot(wavelet::square_to_sphere(p)));
+      }
+    return sum / (taps * taps);
+  }
+
   Rgb m_albedo;
   wavelet::SetInfo m_info;
 };
-
-constexpr int taps = 4; ///< along a pixel's side; the only edge is the horizon
-
-float clamped_cosine(const Vec3& n, int x, int y, int size) {
-  const float step = 1.0F / static_cast<float>(size * taps);
-  float sum = 0;
-  for (int j = 0; j < taps; ++j)
-    for (int i = 0; i < taps; ++i) {
-      const Vec2 p((static_cast<float>(x * taps + i) + 0.5F) * step,
-                   (static_cast<float>(y * taps + j) + 0.5F) * step);
-      sum += std::max(0.0F, n.dot(wavelet::square_to_sphere(p)));
-    }
-  return sum / (taps * taps);
-}
 
 /// A model without highlight, whose sampling routine is the cosine's.
 brdf::BlinnPhong cosine_model(const Rgb& albedo) {
@@ -64,7 +89,7 @@ public:
   }
 
   std::unique_ptr<wavelet::MapSource> maps() const override {
-    return std::make_unique<LambertMaps>(m_albedo);
+    return std::make_unique<LambertMaps>(m_albedo, 64, 64, 1);
   }
   std::unique_ptr<wavelet::MapSource> roll_maps() const override {
     return std::make_unique<LambertMaps>(m_albedo, 32, 16, 32);
@@ -260,34 +285,6 @@ std::vector<wavelet::TreeView> TreeTable::trees() const {
     for (int column = 0; column < m_info.columns; ++column)
       all.push_back(tree(column, row));
   return all;
-}
-
-LambertMaps::LambertMaps(const Rgb& albedo, int size, int theta, int rolls) : m_albedo(albedo) {
-  m_info.kind = wavelet::SetKind::Brdf;
-  m_info.size = size;
-  m_info.columns = theta;
-  m_info.rows = rolls;
-  m_info.rolls = rolls;
-  m_info.cosine = true;
-  m_info.units = "sr^-1";
-}
-
-wavelet::Map LambertMaps::make(int column, int row) const {
-  const float theta_r =
-      (static_cast<float>(column) + 0.5F) * 0.5F * pi / static_cast<float>(m_info.columns);
-  const float phi = m_info.rolls == 1 ? 0.0F
-                                      : (static_cast<float>(row) + 0.5F) * 2.0F * pi /
-                                            static_cast<float>(m_info.rolls);
-  Vec3 n = Vec3::Zero();
-  float sine_theta = 0;
-  sine_cosine(theta_r, sine_theta, n.z());
-  sine_cosine(phi, n.y(), n.x());
-  n.head<2>() *= sine_theta;
-  wavelet::Map map(m_info.size);
-  for (int y = 0; y < map.size; ++y)
-    for (int x = 0; x < map.size; ++x)
-      map.set(x, y, m_albedo / pi * clamped_cosine(n, x, y, map.size));
-  return map;
 }
 
 ShadingPoint shading_point(const Vec3& n, const Vec3& wo) {

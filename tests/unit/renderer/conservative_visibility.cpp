@@ -65,7 +65,7 @@ double mean_error(detail::ConservativeVisibility& squares, const ShapeSet& set, 
 
 } // namespace
 
-TEST_CASE("estimates of what is seen of squares are near the rays' share, and 0 only where that is",
+TEST_CASE("visible fractions of squares agree with rays, and are 0 only where those are",
           "[seen]") {
   for (const Pair& pair : pairs()) {
     const ShapeSet set = both(pair);
@@ -78,7 +78,7 @@ TEST_CASE("estimates of what is seen of squares are near the rays' share, and 0 
   }
 }
 
-TEST_CASE("squares within a square have no occluders that it has not", "[seen]") {
+TEST_CASE("the occluders of a quadrant are among those of its square", "[seen]") {
   for (const Pair& pair : pairs()) {
     INFO(pair.name);
     const ShapeSet set = both(pair);
@@ -103,7 +103,7 @@ TEST_CASE("squares within a square have no occluders that it has not", "[seen]")
   }
 }
 
-TEST_CASE("rays of four lanes meet what rays one by one do", "[seen]") {
+TEST_CASE("intersections of four rays agree with those of single rays", "[seen]") {
   std::mt19937 generator(5);
   std::normal_distribution<float> normal;
   for (const SolidKind kind : {SolidKind::Sphere, SolidKind::Disk, SolidKind::Box,

@@ -141,7 +141,7 @@ TEST_CASE("samplers agree on a scene with shadows; the estimators that assume li
   CHECK(mean_of(render_with(scene, options).film) == Approx(product).epsilon(0.05));
 }
 
-TEST_CASE("what shines is seen to, and adds to what it reflects") {
+TEST_CASE("emission is visible and adds to reflected light") {
   const TemporaryFolder folder;
   SceneDescription scene = lambert_scene(folder, true);
   RenderOptions options;
@@ -222,7 +222,7 @@ TEST_CASE("pixels depend on scene and options alone, not on threads") {
   CHECK(render_with(scene, options).film.rgb != first);
 }
 
-TEST_CASE("a turned light shows what the probe shows the other way") {
+TEST_CASE("a rotated light is the probe looked up in the opposite rotation") {
   const TemporaryFolder folder;
   SceneDescription scene = lambert_scene(folder, false);
   scene.camera.from = Vec3(0, 0, 5);

@@ -35,7 +35,7 @@ TEST_CASE("the product's own integral is close to the truth") {
   }
 }
 
-TEST_CASE("a sampler whose table the scene does not name says which") {
+TEST_CASE("a missing table is reported with the sampler that needs it") {
   SceneDescription description = fixture().scene("rough", "studio");
   description.light.table.clear();
   CHECK_THROWS_WITH(LoadedScene(description, {}, SamplerKind::ProductTable, false),

@@ -150,7 +150,7 @@ TEST_CASE("a sphere of each model looks the same with every sampler") {
   }
 }
 
-TEST_CASE("trees are made of a model when a sampler wants them") {
+TEST_CASE("trees of a model are built when a sampler needs them") {
   SceneDescription description = scene_of(models()[1]);
   CHECK(count_strays(description, SamplerKind::Product, "blinn-phong", 8000) <= 1);
   description.light.table = fixture().scene("rough", "studio").light.table;

@@ -1,4 +1,4 @@
-// Samplers that follow the light alone: the alias table, and lamps in place of regions.
+// Samplers that follow the light alone: the alias table, and lights in place of regions.
 
 #include "sampler_checks.h"
 
@@ -28,9 +28,9 @@ SceneDescription scene_under(const std::string& probe) {
   return scene;
 }
 
-/// Lamps of a scene's light, as the renderer sees them.
-struct Lamps {
-  Lamps(const SceneDescription& description, SamplerKind kind, std::size_t count)
+/// RepresentativeLights of a scene's light, as the renderer sees them.
+struct RepresentativeLights {
+  RepresentativeLights(const SceneDescription& description, SamplerKind kind, std::size_t count)
       : scene(description, {}, kind, false), samples(count), radiance(count), energy(count) {
     SamplerOptions options;
     options.count = count;
@@ -76,12 +76,12 @@ double power_of(const SceneDescription& description) {
   return static_cast<double>(luminance(probe_of(description).integral()));
 }
 
-/// Least angle between two lamps, radians.
-double least_distance(const Lamps& lamps) {
+/// Least angle between two lights, radians.
+double least_distance(const RepresentativeLights& lights) {
   float most = -1;
-  for (std::size_t i = 0; i < lamps.samples.size(); ++i)
+  for (std::size_t i = 0; i < lights.samples.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      most = std::max(most, lamps.samples[i].direction.dot(lamps.samples[j].direction));
+      most = std::max(most, lights.samples[i].direction.dot(lights.samples[j].direction));
   return std::acos(std::min(1.0, static_cast<double>(most)));
 }
 
@@ -105,35 +105,35 @@ TEST_CASE("the alias table and the cdf draw with one density") {
   CHECK(different < 5);
 }
 
-TEST_CASE("lamps keep the light's energy, however many") {
+TEST_CASE("representative lights keep the light's energy, however many") {
   for (const char* probe : {"studio", "spheres"}) {
     const SceneDescription description = fixture().scene("rough", probe);
     const double power = power_of(description);
     for (const SamplerKind kind : lamp_kinds)
       for (const std::size_t count : {1U, 2U, 7U, 64U, 300U}) {
-        const Lamps lamps(description, kind, count);
-        INFO(probe << ", " << count << " lamps of " << sampler_name(kind));
-        CHECK(lamps.whole() == Approx(power).epsilon(2e-3));
-        CHECK(lamps.lit() == static_cast<std::ptrdiff_t>(count));
+        const RepresentativeLights lights(description, kind, count);
+        INFO(probe << ", " << count << " lights of " << sampler_name(kind));
+        CHECK(lights.whole() == Approx(power).epsilon(2e-3));
+        CHECK(lights.lit() == static_cast<std::ptrdiff_t>(count));
       }
   }
 }
 
-TEST_CASE("with many lamps the reflected light is what it should be") {
+TEST_CASE("with many representative lights the reflected light is what it should be") {
   const SceneDescription description = fixture().scene("rough", "studio");
   const probe::Probe source = probe_of(description);
   for (const SamplerKind kind : lamp_kinds) {
     const auto error = [&](std::size_t count) {
-      const Lamps lamps(description, kind, count);
+      const RepresentativeLights lights(description, kind, count);
       double difference = 0;
       double sum = 0;
       for (const ShadingPoint& point : shading_points()) {
-        const double truth = quadrature(lamps.scene, point, source);
+        const double truth = quadrature(lights.scene, point, source);
         double estimate = 0;
         for (std::size_t i = 0; i < count; ++i)
-          estimate += lamps.energy[i] *
-                      static_cast<double>(luminance(
-                          lamps.scene.materials()[0].evaluate(point, lamps.samples[i].direction)));
+          estimate +=
+              lights.energy[i] * static_cast<double>(luminance(lights.scene.materials()[0].evaluate(
+                                     point, lights.samples[i].direction)));
         difference += std::abs(estimate - truth);
         sum += truth;
       }
@@ -147,7 +147,8 @@ TEST_CASE("with many lamps the reflected light is what it should be") {
   }
 }
 
-TEST_CASE("every probe has lamps: black but for a pixel, all equal, faint; one lamp or many") {
+TEST_CASE("every probe has representative lights: black but for a pixel, all equal, faint; one "
+          "light or many") {
   const TemporaryFolder folder;
   const std::pair<float, float> probes[] = {{0, 1000}, {1, 1}, {1, 1e6F}, {1e-20F, 1e-20F}};
   for (const auto& [value, bright] : probes) {
@@ -155,10 +156,10 @@ TEST_CASE("every probe has lamps: black but for a pixel, all equal, faint; one l
     const double power = power_of(description);
     for (const SamplerKind kind : lamp_kinds)
       for (const std::size_t count : {1U, 5U, 200U}) {
-        const Lamps lamps(description, kind, count);
-        INFO(value << " and " << bright << ", " << count << " lamps of " << sampler_name(kind));
-        CHECK(lamps.whole() == Approx(power).epsilon(2e-3));
-        for (const DirectionSample& s : lamps.samples) {
+        const RepresentativeLights lights(description, kind, count);
+        INFO(value << " and " << bright << ", " << count << " lights of " << sampler_name(kind));
+        CHECK(lights.whole() == Approx(power).epsilon(2e-3));
+        for (const DirectionSample& s : lights.samples) {
           REQUIRE(s.direction.norm() == Approx(1).epsilon(1e-4));
           REQUIRE(std::isfinite(s.pdf));
         }
@@ -171,26 +172,27 @@ TEST_CASE("a light that is a tree alone is sampled too") {
   const double power = power_of(description);
   description.light.probe.clear();
   for (const SamplerKind kind : lamp_kinds)
-    CHECK(Lamps(description, kind, 64).whole() == Approx(power).epsilon(0.02));
-  CHECK(Lamps(description, SamplerKind::Alias, 4096).whole() == Approx(power).epsilon(0.02));
+    CHECK(RepresentativeLights(description, kind, 64).whole() == Approx(power).epsilon(0.02));
+  CHECK(RepresentativeLights(description, SamplerKind::Alias, 4096).whole() ==
+        Approx(power).epsilon(0.02));
 }
 
-TEST_CASE("median cut gives lamps equal shares, of powers of two and in between") {
+TEST_CASE("median cut gives representative lights equal shares, of powers of two and in between") {
   const SceneDescription description = fixture().scene("rough", "studio");
   for (const std::size_t count : {16U, 64U}) {
-    const Lamps lamps(description, SamplerKind::MedianCut, count);
-    const double mean = lamps.whole() / static_cast<double>(count);
-    const auto [least, most] = std::minmax_element(lamps.energy.begin(), lamps.energy.end());
-    INFO(count << " lamps, " << *least / mean << " to " << *most / mean);
+    const RepresentativeLights lights(description, SamplerKind::MedianCut, count);
+    const double mean = lights.whole() / static_cast<double>(count);
+    const auto [least, most] = std::minmax_element(lights.energy.begin(), lights.energy.end());
+    INFO(count << " lights, " << *least / mean << " to " << *most / mean);
     CHECK(*least > 0.75 * mean);
     CHECK(*most < 1.25 * mean);
   }
-  const Lamps lamps(description, SamplerKind::MedianCut, 24);
-  const auto [least, most] = std::minmax_element(lamps.energy.begin(), lamps.energy.end());
+  const RepresentativeLights lights(description, SamplerKind::MedianCut, 24);
+  const auto [least, most] = std::minmax_element(lights.energy.begin(), lights.energy.end());
   CHECK(*most < 2.2 * *least);
 }
 
-TEST_CASE("lamps of a uniform sky are spread evenly") {
+TEST_CASE("representative lights of a uniform sky are spread evenly") {
   const TemporaryFolder folder;
   const SceneDescription description = scene_under(uniform_probe(folder, 1, 1));
   constexpr std::size_t count = 128;
@@ -200,17 +202,18 @@ TEST_CASE("lamps of a uniform sky are spread evenly") {
                                                   {SamplerKind::Structured, 0.16},
                                                   {SamplerKind::Ostromoukhov, 0.08}};
   for (const auto& [kind, distance] : least) {
-    const Lamps lamps(description, kind, count);
+    const RepresentativeLights lights(description, kind, count);
     INFO(sampler_name(kind));
-    CHECK(least_distance(lamps) > distance);
+    CHECK(least_distance(lights) > distance);
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < count; ++i)
-      sum += static_cast<float>(lamps.energy[i] / lamps.whole()) * lamps.samples[i].direction;
+      sum += static_cast<float>(lights.energy[i] / lights.whole()) * lights.samples[i].direction;
     CHECK(sum.norm() < 0.06F);
   }
 }
 
-TEST_CASE("structured lamps are shared by energy and the fourth root of solid angle") {
+TEST_CASE(
+    "structured representative lights are shared by energy and the fourth root of solid angle") {
   const TemporaryFolder folder;
   // A small disk as strong as the rest of the sky.
   Image image(64, 64);
@@ -228,26 +231,26 @@ TEST_CASE("structured lamps are shared by energy and the fourth root of solid an
   const double disk = 200 * solid_angle * std::pow(std::min(solid_angle, 0.01), 0.25);
   const double sky = (4 * std::numbers::pi - solid_angle) * std::pow(0.01, 0.25);
   constexpr std::size_t count = 100;
-  const Lamps lamps(description, SamplerKind::Structured, count);
+  const RepresentativeLights lights(description, SamplerKind::Structured, count);
   double in_disk = 0;
-  for (const DirectionSample& s : lamps.samples)
+  for (const DirectionSample& s : lights.samples)
     in_disk += luminance(source.radiance(s.direction)) > 100 ? 1 : 0;
-  INFO(in_disk << " of " << count << " lamps, expected " << count * disk / (disk + sky));
+  INFO(in_disk << " of " << count << " lights, expected " << count * disk / (disk + sky));
   // The map's pixels along the disk's edge are strata of their own, between both.
   CHECK(in_disk == Approx(count * disk / (disk + sky)).margin(8));
 }
 
-TEST_CASE("more lamps of the tiling take in the fewer, all of one energy") {
+TEST_CASE("more representative lights of the tiling take in the fewer, all of one energy") {
   const SceneDescription description = fixture().scene("rough", "spheres");
-  const Lamps few(description, SamplerKind::Ostromoukhov, 60);
-  const Lamps many(description, SamplerKind::Ostromoukhov, 500);
+  const RepresentativeLights few(description, SamplerKind::Ostromoukhov, 60);
+  const RepresentativeLights many(description, SamplerKind::Ostromoukhov, 500);
   for (std::size_t i = 0; i < few.samples.size(); ++i)
     CHECK(few.samples[i].direction == many.samples[i].direction);
   for (const double energy : many.energy)
     CHECK(energy == Approx(many.whole() / 500).epsilon(1e-3));
 }
 
-TEST_CASE("lamps are the same at every point, and of any count at any time") {
+TEST_CASE("representative lights are the same at every point, and of any count at any time") {
   const LoadedScene scene(fixture().scene("rough", "studio"), {}, SamplerKind::KolligKeller, false);
   const auto factory = make_sampler_factory(SamplerKind::KolligKeller, scene, {});
   const auto one = factory->make(16);

@@ -162,7 +162,7 @@ TEST_CASE("samples of bidirectional importance sampling have the same luminance"
     CHECK(integrand(scene, point, s.direction) / s.pdf == Approx(first).epsilon(1e-4));
 }
 
-TEST_CASE("resampling samplers tell the density of their candidates") {
+TEST_CASE("resampling samplers report the density of their candidates") {
   const LoadedScene scene(fixture().scene("rough", "studio"), {}, SamplerKind::Mis, false);
   for (const ShadingPoint& point : shading_points()) {
     const auto light = sampler_of(SamplerKind::Light, scene, point);

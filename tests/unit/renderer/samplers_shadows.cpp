@@ -74,7 +74,7 @@ double check_in_shadow(SamplerKind kind, const std::string& material, std::uint3
 
 } // namespace
 
-TEST_CASE("products that know of shapes in the way agree with brute force and their own pdf") {
+TEST_CASE("products with occluders agree with brute force and with their pdf") {
   std::uint32_t key = 300;
   for (const char* material : {"rough", "glossy"}) {
     const double by_rays = check_in_shadow(SamplerKind::Product, material, key);

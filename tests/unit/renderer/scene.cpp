@@ -5,7 +5,7 @@
 using namespace haarlight;
 using namespace haarlight::renderer;
 
-TEST_CASE("a scene says what its file says", "[scene]") {
+TEST_CASE("a scene has the values of its file", "[scene]") {
   const SceneOnDisk disk(plain_scene);
   const SceneDescription scene = load_scene(disk.path());
   CHECK(scene.width == 256);
@@ -59,7 +59,7 @@ TEST_CASE("the light's and the camera's other keys", "[scene]") {
   CHECK(scene.camera.up == Vec3::UnitY());
 }
 
-TEST_CASE("any material may shine, also one that reflects nothing", "[scene]") {
+TEST_CASE("any material may be emissive, also one that does not reflect", "[scene]") {
   const std::string floor = R"({"lambert": [0.5, 0.25, 1]})";
   const SceneDescription both =
       load(replaced(plain_scene, floor, R"({"lambert": [0.5, 0.25, 1], "emission": [1, 0, 2e3]})"));

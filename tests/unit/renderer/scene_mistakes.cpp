@@ -24,11 +24,11 @@ TEST_CASE("a JSON syntax error is reported with byte, line and column", "[scene]
     CHECK_THAT(complaint(text), Catch::StartsWith(begin));
   };
   begins("", "byte 0: line 1, column 1: invalid JSON: syntax error");
-  begins(plain_scene.substr(0, 300), "byte 300: line 4, column 29: invalid JSON: ");
-  begins(plain_scene + "}", "byte " + std::to_string(plain_scene.size()) + ": line 7, column 94: ");
+  begins(plain_scene.substr(0, 300), "byte 300: line 5, column 1: invalid JSON: ");
+  begins(plain_scene + "}", "byte " + std::to_string(plain_scene.size()) + ": line 7, column 98: ");
   begins("{\"film\": \xFF\xFE\n}", "byte 9: line 1, column 10: invalid JSON: ");
-  begins("{\"film\":\n\n  tru}", "byte 16: line 3, column 6: invalid JSON: ");
-  begins("{\"film\":\r\n 1e999}", "byte 16: line 2, column 7: invalid JSON: number overflow");
+  begins("{\"film\":\n\n  tru}", "byte 15: line 3, column 6: invalid JSON: ");
+  begins("{\"film\":\r\n 1e999}", "byte 15: line 2, column 6: invalid JSON: number overflow");
   CHECK(complaint(std::string(100000, '[')) == "nests deeper than 64 levels");
   CHECK(complaint("[]") == "must be an object, is an array");
 }

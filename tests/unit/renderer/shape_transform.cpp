@@ -123,7 +123,7 @@ TEST_CASE("a scaled sphere is an ellipsoid", "[transform]") {
   }
 }
 
-TEST_CASE("turned, mirrored and evenly scaled spheres stay spheres", "[transform]") {
+TEST_CASE("rotated, mirrored and uniformly scaled spheres stay spheres", "[transform]") {
   ShapeSet plain;
   ShapeSet turned;
   plain.add(Sphere{Vec3(0, 3, 0), 2});

@@ -171,7 +171,7 @@ TEST_CASE("a view that varies starts as the picture, and moves highlights") {
   CHECK((behind.color(behind.index(5, 7)) == 0).all());
 }
 
-TEST_CASE("a light keeps its energy however it turns, and its map where it does not") {
+TEST_CASE("a light keeps its energy under rotation, and its map without") {
   const SceneDescription scene = small_scene();
   const Light light(scene.light, SourceLookups().probe);
   const RotatedLight turned(light, 32);
@@ -209,7 +209,7 @@ TEST_CASE("tolerance is kept, and costs bytes") {
   CHECK(coarse.nodes < fine.nodes / 2);
 }
 
-TEST_CASE("what varies is named as on the command line") {
+TEST_CASE("the varying factor is named as on the command line") {
   const SceneDescription scene = small_scene();
   for (const char* text : {"light", "view", "object:1", "material:grey"})
     CHECK(variation_text(scene, variation_from_text(scene, text)) == text);
@@ -218,7 +218,7 @@ TEST_CASE("what varies is named as on the command line") {
     CHECK_THROWS_AS(variation_from_text(scene, text), std::invalid_argument);
 }
 
-TEST_CASE("a transfer belongs to its scene, and other sets are none") {
+TEST_CASE("a transfer belongs to its scene; other sets are refused") {
   const TemporaryFolder folder;
   SceneDescription scene = small_scene();
   build(scene, "light", folder.file("t.haar"), 0.3);

@@ -57,7 +57,7 @@ Comparison compare(const Tree& tree, const Visible& visible) {
 
 } // namespace
 
-TEST_CASE("visibility trees of objects say what rays say", "[visibility]") {
+TEST_CASE("visibility trees of objects agree with rays", "[visibility]") {
   for (const Pair& pair : pairs()) {
     INFO(pair.name);
     const ShapeSet set = both(pair);
@@ -117,7 +117,7 @@ TEST_CASE("an object's own visibility ends at its horizon", "[visibility]") {
   }
 }
 
-TEST_CASE("a torus is in its own way", "[visibility]") {
+TEST_CASE("a torus occludes itself", "[visibility]") {
   const Pair ring = {"", Torus{Vec3(0, 0, 0), Vec3(0.2F, 1, 0.1F), 1, 0.4F}};
   const ShapeSet set = only(ring);
   const VisibilityTrees trees(set, turned_light());
@@ -133,7 +133,7 @@ TEST_CASE("a torus is in its own way", "[visibility]") {
   CHECK(result.mean == Approx(result.rays).margin(2e-3));
 }
 
-TEST_CASE("visibilities multiply to what is seen past all objects", "[visibility]") {
+TEST_CASE("the product of visibilities is the visibility past all objects", "[visibility]") {
   ShapeSet set;
   set.add(Sphere{Vec3::Zero(), 0.1F});
   set.add(Sphere{Vec3(0.6F, 0.7F, -0.4F), 0.5F});
@@ -149,4 +149,19 @@ TEST_CASE("visibilities multiply to what is seen past all objects", "[visibility
       all, [&](const Vec3& w) { return w.dot(hit.normal) > 0 && !set.occluded(leave(hit, w)); });
   CHECK(result.wrong == 0);
   CHECK(result.mean == Approx(result.rays).margin(2e-3));
+}
+
+TEST_CASE("occluder trees are those of objects that occlude the hemisphere of a point",
+          "[visibility]") {
+  ShapeSet set;
+  set.add(Sphere{Vec3::Zero(), 0.1F}); // the shaded object
+  set.add(Sphere{Vec3(0.6F, 0.7F, -0.4F), 0.5F});
+  set.add(Sphere{Vec3(0, -3, 0), 0.5F}); // below the horizon
+  const Hit hit = top_of_sphere();
+  const VisibilityTrees visibility(set, turned_light());
+  OccluderTrees occluders(visibility, set.size(), levels);
+  const auto trees = occluders.at(hit);
+  REQUIRE(trees.size() == 1);
+  CHECK(trees[0].mean[0] == visibility.object(1, hit, levels).mean[0]);
+  CHECK(occluders.at(hit, 1).empty());
 }
