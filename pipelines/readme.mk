@@ -30,7 +30,7 @@ $(views): flags =
 level.exr: flags = --level 4
 environment.exr: flags = --environment
 $(views): gallery/scene/viewer.json
-	$(step) update $@ $(@:.exr=.txt) -- $< $(sources) $(trees) -- haarview $< --frame $@ $(flags)
+	$(step) update $@ $(@:.exr=.txt) -- $< $(sources) $(trees) -- haarview $< --image $@ $(flags)
 viewer.png: $(views)
 	$(step) update $@ -- $^ -- haarsheet $^ --caption "lamp" --caption "lamp, level 4" \
 	  --caption "environment" --columns 3 --tone-map filmic -o $@; publish $@ "$$pictures/viewer.png"

@@ -1,10 +1,9 @@
 // haarbench: compares samplers at equal samples and at equal time.
 #include <bench/inputs.h>
 #include <bench/measure.h>
-#include <bench/page.h>
 #include <bench/plan.h>
-#include <bench/summary.h>
-#include <html/text_file.h>
+#include <bench/report.h>
+#include <html/page.h>
 #include <render/film_output.h>
 #include <support/progress.h>
 #include <support/tool.h>

@@ -1,5 +1,5 @@
 // haarinfo: statistics, validation and pictures of a .haar file.
-#include <html/text_file.h>
+#include <html/page.h>
 #include <info/page.h>
 #include <support/arguments.h>
 #include <support/tool.h>

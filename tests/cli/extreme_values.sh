@@ -93,12 +93,12 @@ for pair in "black huge" "huge black"; do
     --theta 2 --probe-size 8 --samplers light,product -o "bench-$brdf"
   ! grep -liE '(^|[^a-z])(nan|inf)([^a-z]|$)' "bench-$brdf"/results.* || fail "haarbench writes no numbers"
 done
-if [ -x "$bin/haarview" ] && "$bin/haarview" emitter.json --frame view.png -q >/dev/null 2>&1; then
+if [ -x "$bin/haarview" ] && "$bin/haarview" emitter.json --image view.png -q >/dev/null 2>&1; then
   for light in black huge; do
-    runs haarview brdf-black.haar --size 8x8 --probe $light.haar --compare --frame view.exr
-    runs haarview brdf-huge.haar --size 8x8 --frame view.png
+    runs haarview brdf-black.haar --size 8x8 --probe $light.haar --compare --image view.exr
+    runs haarview brdf-huge.haar --size 8x8 --image view.png
   done
-  runs haarview emitter.json --environment --frame view.exr
+  runs haarview emitter.json --environment --image view.exr
 else
   skip "haarview was not built or cannot draw"
 fi

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# haarinfo --html: pages about sets of every kind, what they hold, and that they hold nothing else.
+# haarinfo --html: pages about sets of every kind, their sections, and that they are self-contained.
 source "$(dirname "$0")/lib.sh" "$1"
 
 "$bin/brdfsynth" --model ggx --diffuse 0.2,0.1,0.1 --roughness 0.4 -q -o ggx.binary >/dev/null
@@ -67,7 +67,7 @@ lacks() { if grep -qF -- "$1" "$log/page.html"; then fail "the page holds '$1'";
 for file in brdf rolls world table packed grey transfer; do
   page $file.haar
   prints "nodes"
-  for part in "<h1>$file.haar</h1>" "Kept against error" "By level" Provenance; do
+  for part in "<h1>$file.haar</h1>" "Error by coefficients kept" "By level" Provenance; do
     holds "$part"
   done
   lacks "Worst maps"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# haarview of transfer: frames against haarrelight apply, level by level, and its misuse.
+# haarview of transfer: frames compared with haarrelight apply, level by level, and errors.
 source "$(dirname "$0")/lib.sh" "$1"
 source "$(dirname "$0")/view_lib.sh"
 
@@ -23,7 +23,7 @@ END
 
 needs_egl light.haar
 
-# agrees CHANGE…: with apply of the same change within 1 %, nearer the finer the level
+# agrees CHANGE…: within 1 % of apply with the same change, with an error that decreases with the level
 agrees() {
   "$bin/haarrelight" apply light.haar "$@" -q -o applied.exr >/dev/null
   expect 0 haarview light.haar "$@" --reference applied.exr --repeat 1 --json --frame frame.exr
@@ -37,11 +37,11 @@ agrees
 agrees --rotate 70,0,0
 cp frame.exr turned.exr
 agrees --rotate=-30,20,200 --light sun-sky.hdr
-agrees --light sun-sky.haar
+agrees --probe sun-sky.haar
 agrees
 cmp -s frame.exr turned.exr && fail "--rotate changes nothing"
 
-# --compare makes the same picture itself; that of another turn is far from the frame
+# --compare computes the same picture; that of another rotation differs
 expect 0 haarview light.haar --rotate 70,0,0 --compare --repeat 1 --json --frame frame.exr
 mapfile -t error < <(errors)
 number "${error[0]} <= 0.01"
@@ -50,7 +50,7 @@ expect 0 haarview light.haar --rotate 160,0,0 --reference turned.exr --repeat 1 
 mapfile -t error < <(errors)
 number "${error[0]} > 0.1"
 
-# --level draws what the comparison says of it, with fewer accesses
+# --level has the error that the comparison reports, with fewer accesses
 expect 0 haarview light.haar --level 2 --compare --repeat 1 --json --frame frame.exr
 mapfile -t error < <(errors)
 number "${error[0]} == ${error[3]}"
@@ -69,22 +69,22 @@ expect 3 haarview elsewhere/packed.haar --frame frame.exr
 expect 0 haarview light.haar --frame frame.png
 rm -r elsewhere bare.json frame.png
 
-# what goes wrong
+# errors
 expect 3 haarview object.haar --frame picture.exr
-says "lets object:1 vary; this takes one built with --vary light"
+says "was built with --vary object:1; expected --vary light"
 expect 2 haarview object.haar --frame picture.exr --rotate 10,0,0
 says "was built with --vary object:1, not light"
-for option in "--size 8x8" "--environment" "--probe studio.hdr" "--light-direction 0,0,1" "--export page.html"; do
+for option in "--size 8x8" "--environment" "--light-direction 0,0,1" "--html page.html"; do
   # shellcheck disable=SC2086
   expect 2 haarview light.haar --frame picture.exr $option
-  says "transfer takes no such option"
+  says "does not apply to transfer"
 done
 expect 2 haarview light.haar --frame picture.exr --level 14
 expect 2 haarview light.haar --frame picture.exr --rotate 10
-for option in "--rotate 1,2,3" "--light studio.hdr" "--scene scene.json"; do
+for option in "--rotate 1,2,3" "--scene scene.json"; do
   # shellcheck disable=SC2086
   expect 2 haarview brdf.haar --frame picture.exr $option
-  says "is of transfer"
+  says "applies to transfer"
 done
 expect 3 haarview light.haar --scene missing.json --frame picture.exr
 sed 's/"rotate": 20/"rotate": 21/' scene.json >other.json

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# haarview's window on a screen of its own: turned, saved, beside another, and with files rewritten under it.
+# haarview's window on a virtual screen: orbit, screenshots, two panes, and files that are rewritten.
 source "$(dirname "$0")/lib.sh" "$1"
 source "$(dirname "$0")/view_lib.sh"
 
@@ -11,13 +11,13 @@ done
 "$bin/probesynth" --scene studio --size 32 -q -o studio.hdr >/dev/null
 inputs="brdf.binary brdf.haar other.binary other.haar studio.hdr"
 
-# what goes wrong without a screen
+# errors without a screen
 unset DISPLAY WAYLAND_DISPLAY
 expect 4 haarview brdf.haar
 has_window || finish
 says "haarview: window: cannot be opened"
 for wrong in "--turn 30" "--frames 0" "--frames 2 --screenshot picture.jpg" "--screenshot picture.png" \
-  "--frames 2 --reloads 1" "--frame picture.png --watch" "--compare"; do
+  "--frames 2 --reloads 1" "--image picture.png --watch" "--compare"; do
   # shellcheck disable=SC2086
   expect 2 haarview brdf.haar $wrong
 done
@@ -64,7 +64,7 @@ END
 )
 }
 
-# saved NAME ARGUMENTS…: a picture of the window without its controls
+# saved NAME ARGUMENTS…: a screenshot of the window without its controls
 saved() {
   local name=$1
   shift
@@ -80,8 +80,8 @@ saved round brdf.haar --frames 2 --turn 360
 saved other other.haar --frames 1
 saved beside brdf.haar --against other.haar --frames 1
 saved around brdf.haar --frames 1 --probe studio.hdr --light-level 5
-expect 0 haarview brdf.haar --size 120x90 --frame frame.png
-expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --frame frame_around.png
+expect 0 haarview brdf.haar --size 120x90 --image frame.png
+expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --image frame_around.png
 expect 0 haarview brdf.haar --size 400x300 --frames 2 --screenshot panel.png --json
 if has python3; then
   valid_json
@@ -98,7 +98,7 @@ if has python3; then
   done
 fi
 
-# watched WAY NAME: a file is rewritten in that way again and again until the window has tried to read it once
+# watched WAY NAME: a file is rewritten in that way repeatedly until the window has tried to reload it once
 watched() {
   cp brdf.haar watched.haar
   timeout 60 "$bin/haarview" watched.haar --size 120x90 --no-panel --watch --reloads 1 --frames 1 --json \
@@ -113,14 +113,14 @@ half_written() { head -c 3000 other.haar >"$1"; }
 watched replaced reloaded
 same reloaded.png other.png
 prints '"reloads": 1'
-says "watched.haar was read again"
+says "watched.haar was reloaded"
 watched rewritten reloaded
 same reloaded.png other.png
 watched half_written kept
 same kept.png still.png
 prints '"refused_reloads": 1'
 says "watched.haar"
-says "the version before is kept"
+says "the previous version is kept"
 
 # shellcheck disable=SC2086
 leaves $inputs still.png turned.png again.png round.png other.png beside.png around.png frame.png frame_around.png \

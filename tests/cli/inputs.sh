@@ -66,9 +66,9 @@ twice haarbench --brdf - --probe - -o bench
 twice haarbench --brdf - - --probe studio.hdr -o bench
 [ ! -e bench ] || fail "haarbench left its folder"
 if [ -x "$bin/haarview" ]; then
-  twice haarview - --probe - --frame view.png
+  twice haarview - --probe - --image view.png
   twice haarview - --against - --frames 1
-  twice haarview - --compare --reference - --frame view.png
+  twice haarview - --compare --reference - --image view.png
 fi
 
 # Memory that the system refuses is named.

@@ -140,8 +140,8 @@ expect 2 haarrelight apply T.haar -o scene.json
 expect 2 haarrelight apply T.haar -o a.exr --image a.exr
 expect 2 haarrelight sweep T.haar -o -
 if [ -x "$bin/haarview" ]; then
-  expect 2 haarview scene.json --frame brdf.haar.png --export brdf.haar.png
-  expect 2 haarview scene.json --frame probe.exr --probe probe.exr
+  expect 2 haarview scene.json --image brdf.haar.png --html brdf.haar.png
+  expect 2 haarview scene.json --image probe.exr --probe probe.exr
 fi
 [ "$(cat "${inputs[@]}" | cksum)" = "$before" ] || fail "an input has changed"
 rm scene-link.json probe-link.exr new-link.png T.haar

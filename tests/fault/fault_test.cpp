@@ -60,8 +60,8 @@ const std::vector<Case> cases = {
     {"haarrelight-sweep", {"haarrelight", "sweep", "../in/transfer.haar", "--frames", "2", "-o", "out.png"}, {"out.png", "out-0000.png", "out-0001.png"}},
     {"haarbench", {"haarbench", "--brdf", "../in/ggx.binary", "--probe", "../in/studio.hdr", "--samplers", "light", "--size", "4x4", "--seeds", "2", "--spp", "1", "--reference-spp", "16", "--brdf-size", "8", "--theta", "2", "--probe-size", "8", "-o", "out"},
      {"out/results.json", "out/results.csv", "out/report.html"}, true, "out/cache/"},
-    {"haarview", {"haarview", "../in/transfer.haar", "--frame", "out.exr"}, {"out.exr"}, false, "", true},
-    {"haarview-export", {"haarview", "../in/lobe.haar", "--size", "8x8", "--export", "out.html"}, {"out.html"}, false, "", true},
+    {"haarview", {"haarview", "../in/transfer.haar", "--image", "out.exr"}, {"out.exr"}, false, "", true},
+    {"haarview-export", {"haarview", "../in/lobe.haar", "--size", "8x8", "--html", "out.html"}, {"out.html"}, false, "", true},
 };
 
 const std::vector<Strings> preparation = {

@@ -1,7 +1,7 @@
 #include <bench/inputs.h>
 
 #include <bench/plan.h>
-#include <html/text_file.h>
+#include <html/page.h>
 #include <support/progress.h>
 
 #include <brdf/brdf_maps.h>

@@ -1,4 +1,4 @@
-#include <info/error_curve.h>
+#include <info/page.h>
 
 #include <wavelet/base/parallel.h>
 
@@ -15,10 +15,10 @@ using wavelet::TreeSet;
 using wavelet::TreeView;
 
 constexpr unsigned mantissa_bits = 23;
-constexpr unsigned bin_shift = 17; ///< 64 bins for each doubling
+constexpr unsigned bin_shift = 17; ///< 64 bins per octave
 
-/// Energies by size. Those of a bin share their exponent, so that their sum is a sum of integers,
-/// the same in any order.
+/// Energies by size. All energies of a bin have the same exponent, so that their sum is a sum of
+/// integers, which does not depend on the order.
 class Histogram {
 public:
   /// @param energy finite, ≥ 0
@@ -39,7 +39,7 @@ public:
     }
   }
 
-  /// Bins, by rising energy.
+  /// Number of bins, ordered by increasing energy.
   std::size_t size() const { return m_bins.size(); }
   std::uint64_t count(std::size_t bin) const { return m_bins[bin].count; }
   double energy(std::size_t bin) const {
@@ -55,8 +55,8 @@ private:
   std::vector<Bin> m_bins = std::vector<Bin>(std::size_t{1} << (31 - bin_shift));
 };
 
-/// A power of two that brings the trees' coefficients into a range whose squares are floats. The
-/// curve is relative, so that it depends on no such factor.
+/// A power of two that scales the trees' coefficients to a range in which their squares do not
+/// overflow. The curve is relative, so it does not depend on this factor.
 float common_scale(const TreeSet& set, const std::vector<MapPlace>& trees) {
   constexpr int largest_exponent = 126;
   float largest = 0;
@@ -69,7 +69,7 @@ float common_scale(const TreeSet& set, const std::vector<MapPlace>& trees) {
 
 float weighted_square(Float4 c) { return wavelet::lane_sum(c * c * wavelet::luminance_lanes); }
 
-Histogram histogram_of(const TreeSet& set, MapPlace place, float scale) {
+Histogram energy_histogram(const TreeSet& set, MapPlace place, float scale) {
   const TreeView& tree = set.tree(place.column, place.row);
   Histogram histogram;
   std::uint32_t node = 0;
@@ -82,11 +82,11 @@ Histogram histogram_of(const TreeSet& set, MapPlace place, float scale) {
   return histogram;
 }
 
-Histogram histogram_of(const TreeSet& set, const std::vector<MapPlace>& trees, float scale) {
+Histogram energy_histogram(const TreeSet& set, const std::vector<MapPlace>& trees, float scale) {
   Histogram sum;
   std::mutex mutex;
   parallel_for(trees.size(), [&](std::size_t i) {
-    const Histogram one = histogram_of(set, trees[i], scale);
+    const Histogram one = energy_histogram(set, trees[i], scale);
     const std::scoped_lock lock(mutex);
     sum.add(one);
   });
@@ -101,16 +101,16 @@ double energy_of_means(const TreeSet& set, const std::vector<MapPlace>& trees, f
   return energy;
 }
 
-/// What is left at every bin if it and all above are kept, absolute; by falling error.
+/// Absolute squared error if a bin and all bins above it are kept, by decreasing error.
 std::vector<KeptPoint> all_points(const Histogram& histogram) {
   std::vector<KeptPoint> points;
-  double rest = 0;
+  double dropped = 0;
   std::uint64_t total = 0;
   for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
     if (histogram.count(bin) == 0)
       continue;
-    points.push_back({total, rest});
-    rest += histogram.energy(bin);
+    points.push_back({total, dropped});
+    dropped += histogram.energy(bin);
     total += histogram.count(bin);
   }
   for (KeptPoint& point : points)
@@ -123,7 +123,7 @@ std::vector<KeptPoint> all_points(const Histogram& histogram) {
 
 std::vector<KeptPoint> error_curve(const TreeSet& set, const std::vector<MapPlace>& trees) {
   const float scale = common_scale(set, trees);
-  const Histogram histogram = histogram_of(set, trees, scale);
+  const Histogram histogram = energy_histogram(set, trees, scale);
   double energy = energy_of_means(set, trees, scale);
   for (std::size_t bin = 0; bin < histogram.size(); ++bin)
     energy += histogram.energy(bin);

@@ -1,8 +1,6 @@
-#include <info/worst_maps.h>
+#include <info/page.h>
 
-#include <html/cells.h>
-#include <html/png_uri.h>
-#include <html/text.h>
+#include <html/page.h>
 
 #include <support/compare.h>
 
@@ -22,14 +20,14 @@ using wavelet::MapPlace;
 constexpr std::size_t shown_maps = 3;
 constexpr int shown_side = 512;
 
-struct Judged {
+struct ComparedMap {
   MapPlace place;
   Difference difference;
 };
 
-std::vector<Judged> judged_maps(const tool::ComparedSets& sets) {
+std::vector<ComparedMap> compare_all(const tool::ComparedSets& sets) {
   const wavelet::SetInfo& info = sets.a->info();
-  std::vector<Judged> maps(static_cast<std::size_t>(info.map_count()));
+  std::vector<ComparedMap> maps(static_cast<std::size_t>(info.map_count()));
   parallel_for(maps.size(), [&](std::size_t i) {
     const int index = static_cast<int>(i);
     const MapPlace place{index % info.columns, index / info.columns};
@@ -40,42 +38,41 @@ std::vector<Judged> judged_maps(const tool::ComparedSets& sets) {
   return maps;
 }
 
-double relative_l2(const std::vector<Judged>& maps) {
+double relative_l2(const std::vector<ComparedMap>& maps) {
   Difference sum;
-  for (const Judged& map : maps) {
+  for (const ComparedMap& map : maps) {
     sum.squared_error += map.difference.squared_error;
     sum.energy += map.difference.energy;
   }
   return sum.relative_l2();
 }
 
-/// The worst first.
-void keep_worst(std::vector<Judged>& maps) {
-  std::stable_sort(maps.begin(), maps.end(), [](const Judged& a, const Judged& b) {
+/// Keeps the maps with the largest error, in decreasing order.
+void keep_worst(std::vector<ComparedMap>& maps) {
+  std::stable_sort(maps.begin(), maps.end(), [](const ComparedMap& a, const ComparedMap& b) {
     return a.difference.squared_error > b.difference.squared_error;
   });
   maps.resize(std::min(maps.size(), shown_maps));
 }
 
-/// Indices are those of A.
+/// Column and row in A.
 std::string name_of(const tool::ComparedSets& sets, const MapPlace& place) {
   return std::to_string(sets.first_a.column + place.column) + "," +
          std::to_string(sets.first_a.row + place.row);
 }
 
-std::string table(const tool::ComparedSets& sets, const std::vector<Judged>& maps) {
-  std::string html = "<table><thead><tr>";
+std::string worst_table(const tool::ComparedSets& sets, const std::vector<ComparedMap>& maps) {
+  html::TableRow head;
   for (const char* name : {"column, row", "L2", "relative L2", "L∞", "PSNR, dB"})
-    html += html::figure_head(name);
-  html += "</tr></thead><tbody>\n";
-  for (const Judged& map : maps) {
+    head.push_back(html::number_cell(name));
+  std::vector<html::TableRow> rows;
+  for (const ComparedMap& map : maps) {
     const Difference& d = map.difference;
-    html += "<tr>" + html::figure_cell(name_of(sets, map.place));
+    rows.push_back({html::number_cell(name_of(sets, map.place))});
     for (const double number : {d.l2(), d.relative_l2(), d.largest_error, d.psnr()})
-      html += html::figure_cell(html::number_html(number));
-    html += "</tr>\n";
+      rows.back().push_back(html::number_cell(html::number_html(number)));
   }
-  return html + "</tbody></table>\n";
+  return html::table({head}, rows);
 }
 
 std::string pictures(const tool::ComparedSets& sets, const MapPlace& place) {
@@ -95,17 +92,18 @@ std::string pictures(const tool::ComparedSets& sets, const MapPlace& place) {
 
 std::string worst_maps_html(const tool::CompareInput& input) {
   const tool::ComparedSets sets = tool::open_compared(input);
-  std::vector<Judged> maps = judged_maps(sets);
-  std::string html = "<h2>Worst maps</h2>\n<p>Against " +
+  std::vector<ComparedMap> maps = compare_all(sets);
+  std::string html = "<h2>Worst maps</h2>\n<p>Compared with " +
                      html::escaped(base_name(input.reference)) +
                      ": relative L2 error of all maps " + html::number_html(relative_l2(maps)) +
-                     ". Those that differ most by L2, original and reconstruction with one "
-                     "exposure; the difference is of luminance, its colours as its legend tells.";
+                     ". The maps with the largest L2 error: original and reconstruction with "
+                     "the same exposure, and the difference of luminance in the colours of its "
+                     "legend.";
   for (const std::string& note : sets.notes)
     html += " Note: " + html::escaped(note) + ".";
   keep_worst(maps);
-  html += "</p>\n" + table(sets, maps);
-  for (const Judged& map : maps)
+  html += "</p>\n" + worst_table(sets, maps);
+  for (const ComparedMap& map : maps)
     html += pictures(sets, map.place);
   return html;
 }

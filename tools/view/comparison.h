@@ -1,8 +1,8 @@
 #pragma once
-// Frames timed, and held against pictures of which more is known.
+// Frames as files, timed, and compared with reference pictures.
 
 #include <support/report.h>
-#include <view/view_options.h>
+#include <view/frame.h>
 
 #include <functional>
 #include <string>
@@ -10,31 +10,41 @@
 
 namespace haarlight::view {
 
-/// Draws frames of one kind.
-struct Drawing {
-  std::function<double(int level)> draw; ///< ms
-  std::function<DrawnFrame()> read;      ///< what was drawn last
-  int repeat;                            ///< frames whose times count
+/// RGB of all pixels, top row first, from the same trees at full resolution on the CPU: one ray
+/// through the centre of each pixel under the state's punctual light.
+std::vector<float> cpu_punctual_frame(const ViewScene& scene, const ViewState& state);
 
-  /// Median time of a frame, ms.
-  double time(int level) const;
-};
+/// The same under the distant light of the scene, by product integrals with visibility maps of 128²
+/// squares; black where there is no object. @throws Error(Input) if a file is broken
+std::vector<float> cpu_environment_frame(const renderer::SceneDescription& scene, int width,
+                                         int height);
 
-/// What frames are compared with, as the options have it; nothing if they are not.
-/// @param film the scene with the size and the light that are drawn
-/// @throws Error(Input) if it cannot be read, or is of another size
-std::vector<float> reference_of(const ViewScene& scene, const renderer::SceneDescription& film,
-                                const Options& options);
-
-/// The picture of `--reference`. @throws Error(Input) if it cannot be read, or is of another size
+/// Reads a reference picture. @throws Error(Input) if it cannot be read or has another size
 std::vector<float> read_reference(const std::string& path, int width, int height);
 
-/// Adds the relative error of the frame of `level`, then error and cost of each level up to the
-/// finest. Backgrounds have to be as in the reference.
-void add_comparison(const Drawing& drawing, int level, int finest,
-                    const std::vector<float>& reference, tool::Report& report);
+/// Root mean square of the difference, relative to that of the reference; 0 for two black pictures.
+double relative_rms(const std::vector<float>& frame, const std::vector<float>& reference);
 
-/// Beyond it frames do not change.
-int finest_level(const ViewScene& scene, const Options& options);
+/// Median of the values that `run` returns in `repeat` calls, milliseconds.
+double median_time(int repeat, const std::function<double()>& run);
+
+/// A frame that is drawn at different levels.
+struct FrameTest {
+  const PictureDrawer& drawer;
+  std::function<double(int level)> draw; ///< returns milliseconds
+  int level;                             ///< of the frame
+  int repeat;                            ///< draws that are timed
+
+  /// Draws the frame and writes it as .exr, or tone-mapped as .png.
+  /// @param exposure stops, of a .png @throws Error(Output)
+  DrawnFrame write(const std::string& path, int width, int height, double exposure) const;
+  /// Median time of the frame, milliseconds.
+  double time() const {
+    return median_time(repeat, [&] { return draw(level); });
+  }
+  /// Adds the relative error of the frame, and error and cost of every level up to `finest`. The
+  /// background must be that of the reference.
+  void compare(const std::vector<float>& reference, int finest, tool::Report& report) const;
+};
 
 } // namespace haarlight::view

@@ -1,16 +1,16 @@
-// The picture under a distant light: the integral of reflectance times light over its squares, as
-// packed_light.h and packed_lobes.h lay them out.
+// A distant light: the integral of reflectance times light over the light's squares. packing.h
+// describes the textures.
 
 uniform highp sampler2D light_squares, light_directions; // mip level k: squares of light_levels - k
 uniform highp sampler3D lobes;
 uniform float light_unit, lobe_unit;
 uniform int light_levels, lobe_levels;
 uniform mat3 to_world; // from the light's frame
-uniform float tolerance; // squares are split while they leave more of the integral in doubt
-uniform bool background;
+uniform float tolerance; // squares are split while their error is a larger fraction of the pixel
+uniform bool show_background;
 
 const int full_level = 5;
-const float even_spread = 1.4472025;
+const float uniform_spread = 1.4472025;
 
 vec4 light_square(int level, ivec2 square) {
   accesses += 1.0;
@@ -18,14 +18,15 @@ vec4 light_square(int level, ivec2 square) {
   return vec4(light.rgb * light_unit, light.a);
 }
 
+/// The square of a level around a direction.
 vec3 light_around(int level, vec3 direction) {
   int side = 1 << level;
   ivec2 square = ivec2(sphere_to_square(direction * to_world) * float(side));
   return light_square(level, min(square, ivec2(side - 1))).rgb;
 }
 
-/// The finest squares, blended.
-vec3 light_towards(vec3 direction) {
+/// Radiance from a direction, bilinear between the finest squares.
+vec3 light_radiance(vec3 direction) {
   int last = (1 << light_levels) - 1;
   vec2 place = sphere_to_square(direction * to_world) * float(last + 1) - 0.5;
   ivec2 first = ivec2(floor(place));
@@ -40,8 +41,8 @@ vec3 light_towards(vec3 direction) {
   return sum;
 }
 
-/// The reflectance's average over a square of `level` about a point, and its deviation within;
-/// `column` counts from the centre of the first of all.
+/// Average and standard deviation of the reflectance over a square of `level` about a point;
+/// `column` 0 is the centre of the first column of all sets.
 vec4 lobe(int level, vec2 point, float column) {
   vec2 middle = abs(point - 0.5);
   int within = int(float(full_level - 1) - log2(max(max(middle.x, middle.y), 1e-3)));
@@ -59,7 +60,7 @@ vec4 lobe(int level, vec2 point, float column) {
   return value;
 }
 
-/// How far a direction is from an object's edge, in radians; negative where the object is.
+/// Angle between a direction and an object's silhouette, radians; negative inside.
 float clearance(int object, Hit hit, vec3 direction) {
   vec4 form = texelFetch(objects, ivec2(0, object), 0);
   if (texelFetch(objects, ivec2(1, object), 0).x != 0.0) {
@@ -72,8 +73,8 @@ float clearance(int object, Hit hit, vec3 direction) {
   return atan(length(towards - along * direction), along) - atan(form.w, tangent);
 }
 
-/// How much of something `width` wide, in radians, is visible about a direction.
-float visible(Hit hit, vec3 direction, float width) {
+/// Visible fraction of a square of angular width `width`, radians, about a direction.
+float visible_fraction(Hit hit, vec3 direction, float width) {
   float part = 1.0;
   for (int i = 0; i < object_count; ++i)
     if (i != hit.object)
@@ -81,21 +82,22 @@ float visible(Hit hit, vec3 direction, float width) {
   return part;
 }
 
-float brightness(vec3 colour) { return dot(colour, vec3(0.2126, 0.7152, 0.0722)); }
+float luminance(vec3 colour) { return dot(colour, vec3(0.2126, 0.7152, 0.0722)); }
 
-/// About how large the average product will be: light of the squares that are as large as the lobe,
-/// as far as that is visible.
-float expected(Hit hit, float column, vec3 mirror) {
+/// Estimate of the pixel: average reflectance times the visible light of the squares as large as the
+/// lobe.
+float estimate(Hit hit, float column, vec3 mirror) {
   vec4 whole = lobe(0, vec2(0.5), column);
-  float mean = max(brightness(whole.rgb), 1e-30);
+  float mean = max(luminance(whole.rgb), 1e-30);
   float variance = whole.a * whole.a / (mean * mean);
   int level = min(int(0.5 * log2(1.0 + variance)), light_levels);
-  float width = 2.45 * even_spread * exp2(float(-level));
-  float seen = max(visible(hit, mirror, width), 0.05);
-  return mean * brightness(light_around(level, mirror)) * seen;
+  float width = 2.45 * uniform_spread * exp2(float(-level));
+  float visible = max(visible_fraction(hit, mirror, width), 0.05);
+  return mean * luminance(light_around(level, mirror)) * visible;
 }
 
-/// Steps to the square that follows in Morton order, no finer; false after the last.
+/// Advances to the next square in Morton order, at the same level or a coarser one; false after the
+/// last.
 bool next_square(inout int level, inout ivec2 square) {
   for (; (square.x & square.y & 1) == 1; --level)
     square >>= 1;
@@ -109,7 +111,7 @@ vec3 reflected(Hit hit, vec3 wo) {
   Lobe place = lobe_at(hit, wo);
   mat3 to_lobe = transpose(place.frame) * to_world;
   float column = place.object.y + place.column;
-  float doubt_allowed = tolerance * expected(hit, column, place.frame[2]);
+  float error_allowed = tolerance * estimate(hit, column, place.frame[2]);
   int finest = forced_level >= 0 ? min(forced_level, light_levels) : light_levels;
   vec3 sum = vec3(0.0);
   int level = 0;
@@ -119,17 +121,17 @@ vec3 reflected(Hit hit, vec3 wo) {
     vec3 direction = texelFetch(light_directions, square, light_levels - level).xyz;
     accesses += 1.0;
     float area = exp2(float(-2 * level));
-    int lobe_level = max(int(log2(even_spread / max(light.a, 1e-4))), level);
+    int lobe_level = max(int(log2(uniform_spread / max(light.a, 1e-4))), level);
     vec4 reflectance = lobe(lobe_level, sphere_to_square(to_lobe * direction), column);
-    float seen = visible(hit, to_world * direction, 2.45 * max(light.a, 1e-4));
-    float in_doubt = seen * reflectance.a +
-                     (seen > 0.0 && seen < 1.0 ? 0.5 * brightness(reflectance.rgb) : 0.0);
-    if (level < finest && area * brightness(light.rgb) * in_doubt > doubt_allowed) {
+    float visible = visible_fraction(hit, to_world * direction, 2.45 * max(light.a, 1e-4));
+    float deviation = visible * reflectance.a +
+                     (visible > 0.0 && visible < 1.0 ? 0.5 * luminance(reflectance.rgb) : 0.0);
+    if (level < finest && area * luminance(light.rgb) * deviation > error_allowed) {
       ++level;
       square <<= 1;
       continue;
     }
-    sum += light.rgb * reflectance.rgb * (seen * area);
+    sum += light.rgb * reflectance.rgb * (visible * area);
     if (!next_square(level, square))
       break;
   }
@@ -139,8 +141,8 @@ vec3 reflected(Hit hit, vec3 wo) {
 void main() {
   Hit hit;
   vec3 direction;
-  if (see(hit, direction))
+  if (camera_hit(hit, direction))
     colour = vec4(reflected(hit, -direction), accesses);
   else
-    colour = vec4(background ? light_towards(direction) : vec3(0.0), 0.0);
+    colour = vec4(show_background ? light_radiance(direction) : vec3(0.0), 0.0);
 }

@@ -1,115 +1,100 @@
 #include <view/frame.h>
 
 #include <view/shaders.h>
+#include <view/transfer.h>
 
 #include <algorithm>
 #include <chrono>
-#include <utility>
 
 namespace haarlight::view {
 
-using namespace renderer;
+using renderer::CameraDescription;
+using renderer::Ray;
 
 namespace {
 
-std::vector<float> list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+std::vector<float> components(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// A ray's direction, long enough to be linear in the film's coordinates.
-Vec3 towards(const Ray& ray, const CameraDescription& camera) {
-  if (camera.projection == CameraProjection::Orthographic)
+/// A ray's direction scaled so that it is linear in film coordinates.
+Vec3 linear_direction(const Ray& ray, const CameraDescription& camera) {
+  if (camera.projection == renderer::CameraProjection::Orthographic)
     return ray.direction;
   return ray.direction / ray.direction.dot((camera.to - camera.from).normalized());
 }
 
-} // namespace
-
-FrameDrawer::FrameDrawer(const ViewScene& scene, int width, int height)
-    : m_lamp(covering_vertex_shader(), lamp_fragment_shader()),
-      m_environment(covering_vertex_shader(), environment_fragment_shader()),
-      m_show(covering_vertex_shader(), show_fragment_shader()),
-      m_camera(scene.description().camera) {
-  resize(width, height);
-  put(pack_scene(scene));
-  put(pack_reflectances(scene));
-  set_lamp({});
-  turn_light(Eigen::Matrix3f::Identity());
-  show_background(true);
-  set_tolerance(environment_tolerance);
-}
-
-void FrameDrawer::put(const PackedScene& packed) {
-  for (const PackedTexture& texture : packed.textures)
-    m_textures.put(texture);
-  for (const auto& [name, values] : packed.floats)
-    set(name, values);
-  for (const auto& [name, value] : packed.integers)
-    set(name, value);
-}
-
-void FrameDrawer::set_light(const PackedLight& light) { put(pack_light_textures(light)); }
-
-void FrameDrawer::turn_light(const Eigen::Matrix3f& to_world) const { set("to_world", to_world); }
-
-void FrameDrawer::show_background(bool shown) const { set("background", shown ? 1 : 0); }
-
-void FrameDrawer::set_tolerance(float tolerance) const {
-  set("tolerance", std::vector<float>{tolerance});
-}
-
-void FrameDrawer::resize(int width, int height) {
-  m_canvas.emplace(width, height);
-  aim();
-}
-
-void FrameDrawer::set_camera(const CameraDescription& camera) {
-  m_camera = camera;
-  aim();
-}
-
-void FrameDrawer::aim() const {
-  const Area area = m_canvas->area();
-  const Camera camera(m_camera, area.width, area.height);
-  const auto w = static_cast<float>(area.width);
-  const auto h = static_cast<float>(area.height);
+void set_camera(const Program& program, const CameraDescription& description, int width,
+                int height) {
+  const renderer::Camera camera(description, width, height);
+  const auto w = static_cast<float>(width);
+  const auto h = static_cast<float>(height);
   const Ray corner = camera.generate_ray(0, 0);
   const Ray right = camera.generate_ray(w, 0);
   const Ray down = camera.generate_ray(0, h);
-  const Vec3 direction = towards(corner, m_camera);
-  const Vec3 direction_y = (towards(down, m_camera) - direction) / h;
-  set("ray_origin", list(corner.origin));
-  set("ray_origin_x", list((right.origin - corner.origin) / w));
-  set("ray_origin_y", list((down.origin - corner.origin) / h));
-  set("ray_towards", list(direction));
-  set("ray_towards_x", list((towards(right, m_camera) - direction) / w));
-  set("ray_towards_y", list(direction_y));
-  set("pixel_size",
-      std::vector<float>{(down.origin - corner.origin).norm() / h, direction_y.norm()});
+  const Vec3 direction = linear_direction(corner, description);
+  const Vec3 direction_y = (linear_direction(down, description) - direction) / h;
+  program.set("ray_origin", components(corner.origin));
+  program.set("ray_origin_x", components((right.origin - corner.origin) / w));
+  program.set("ray_origin_y", components((down.origin - corner.origin) / h));
+  program.set("ray_direction", components(direction));
+  program.set("ray_direction_x",
+              components((linear_direction(right, description) - direction) / w));
+  program.set("ray_direction_y", components(direction_y));
+  program.set("pixel_size",
+              std::vector<float>{(down.origin - corner.origin).norm() / h, direction_y.norm()});
 }
 
-void FrameDrawer::set_lamp(const Lamp& lamp) const {
-  const Vec3 v = lamp.at_point ? lamp.place : lamp.place.normalized();
-  set("lamp", std::vector<float>{v.x(), v.y(), v.z(), lamp.at_point ? 1.0F : 0.0F});
-  set("irradiance", std::vector<float>{lamp.irradiance[0], lamp.irradiance[1], lamp.irradiance[2]});
+void set_punctual(const Program& program, const PunctualLight& light) {
+  const Vec3 v = light.is_point ? light.place : light.place.normalized();
+  program.set("light", std::vector<float>{v.x(), v.y(), v.z(), light.is_point ? 1.0F : 0.0F});
+  program.set("irradiance", components(light.irradiance));
 }
 
-double FrameDrawer::draw(Lighting lighting, int level) const {
-  const Program& program = lighting == Lighting::Lamp ? m_lamp : m_environment;
-  program.set("forced_level", level);
+bool same_camera(const CameraDescription& a, const CameraDescription& b) {
+  return a.projection == b.projection && a.from == b.from && a.to == b.to && a.up == b.up &&
+         a.fov == b.fov && a.height == b.height;
+}
+
+} // namespace
+
+bool ViewState::operator==(const ViewState& other) const {
+  return same_camera(camera, other.camera) && width == other.width && height == other.height &&
+         punctual == other.punctual && environment == other.environment &&
+         to_world == other.to_world && background == other.background &&
+         tolerance == other.tolerance && level == other.level;
+}
+
+PictureDrawer::PictureDrawer() : m_tone_map(full_screen_shader(), tone_map_shader()) {}
+
+void PictureDrawer::resize(int width, int height) { m_target.emplace(width, height); }
+
+void PictureDrawer::upload(const ShaderInputs& inputs,
+                           const std::vector<const Program*>& programs) {
+  for (const TextureData& texture : inputs.textures)
+    m_textures.put(texture);
+  for (const Program* program : programs) {
+    for (const auto& [name, values] : inputs.floats)
+      program->set(name, values);
+    for (const auto& [name, value] : inputs.integers)
+      program->set(name, value);
+  }
+}
+
+double PictureDrawer::draw_with(const Program& program) const {
   m_textures.bind(program);
   const auto begin = std::chrono::steady_clock::now();
-  m_canvas->draw(m_cover);
+  m_target->draw(m_triangle);
   const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - begin;
   return passed.count();
 }
 
-DrawnFrame read_frame(const Canvas& canvas) {
-  const std::vector<float> rgba = canvas.read();
+DrawnFrame PictureDrawer::read() const {
+  const std::vector<float> rgba = m_target->read();
   DrawnFrame frame;
   frame.rgb.resize(rgba.size() / 4 * 3);
   for (std::size_t i = 0; i < frame.rgb.size(); ++i)
     frame.rgb[i] = rgba[i / 3 * 4 + i % 3];
   std::size_t pixels = 0;
-  for (std::size_t i = 3; i < rgba.size(); i += 4) {
+  for (std::size_t i = 3; i < rgba.size(); i += 4) { // shaders count accesses in alpha
     frame.accesses += static_cast<double>(rgba[i]);
     pixels += rgba[i] > 0 ? 1 : 0;
   }
@@ -117,14 +102,49 @@ DrawnFrame read_frame(const Canvas& canvas) {
   return frame;
 }
 
-void show_picture(const Canvas& canvas, const Program& show, const Cover& cover,
-                  unsigned framebuffer, const Area& area, double exposure) {
+void PictureDrawer::show(unsigned framebuffer, const Viewport& viewport, double exposure) const {
   const auto number = [](int value) { return static_cast<float>(value); };
-  show.set("area", std::vector<float>{number(area.x), number(area.y), number(area.width),
-                                      number(area.height)});
-  show.set("exposure", std::vector<float>{static_cast<float>(exposure)});
-  show.set("picture", 0, canvas.texture());
-  cover.draw_to(framebuffer, area);
+  m_tone_map.set("viewport", std::vector<float>{number(viewport.x), number(viewport.y),
+                                                number(viewport.width), number(viewport.height)});
+  m_tone_map.set("exposure", std::vector<float>{static_cast<float>(exposure)});
+  m_tone_map.set("picture", 0, m_target->texture());
+  m_triangle.draw_to(framebuffer, viewport);
+}
+
+SceneDrawer::SceneDrawer(const ViewScene& scene)
+    : m_punctual(full_screen_shader(), punctual_shader()),
+      m_environment(full_screen_shader(), environment_shader()) {
+  upload(pack_scene(scene, true), {&m_punctual, &m_environment});
+}
+
+double SceneDrawer::draw(const ViewState& state) {
+  if (!m_drawn || m_drawn->width != state.width || m_drawn->height != state.height)
+    resize(state.width, state.height);
+  if (state.environment && (!m_drawn || m_drawn->environment != state.environment))
+    upload(state.environment->inputs, {&m_environment});
+  m_drawn = state;
+  const Program& program = state.environment ? m_environment : m_punctual;
+  set_camera(program, state.camera, state.width, state.height);
+  program.set("forced_level", state.level);
+  if (state.environment) {
+    program.set("to_world", state.to_world);
+    program.set("show_background", state.background ? 1 : 0);
+    program.set("tolerance", std::vector<float>{state.tolerance});
+  } else {
+    set_punctual(program, state.punctual);
+  }
+  return draw_with(program);
+}
+
+TransferDrawer::TransferDrawer(const ShaderInputs& transfer, int width, int height)
+    : m_relight(full_screen_shader(), relight_shader()) {
+  resize(width, height);
+  upload(transfer, {&m_relight});
+}
+
+double TransferDrawer::draw(int level) const {
+  m_relight.set("squares_end", squares_above(level));
+  return draw_with(m_relight);
 }
 
 } // namespace haarlight::view

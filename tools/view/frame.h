@@ -1,101 +1,114 @@
 #pragma once
-// Pictures of a scene under a lamp, drawn by GL, for whatever owns the context.
+// Pictures of scenes and of transfer, drawn with GL in the context of the caller.
 
-#include <view/gl_objects.h>
-#include <view/gl_textures.h>
-#include <view/packed_scene.h>
+#include <view/gl.h>
+#include <view/packing.h>
 #include <view/view_scene.h>
 
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace haarlight::view {
 
-enum class Lighting { Lamp, Environment };
-
-/// The level that the pixel needs.
+/// Each pixel uses the level of the trees that it needs.
 inline constexpr int automatic_level = -1;
 
-/// Squares of a distant light are split while each leaves more than this share of a pixel in doubt,
-/// by estimate.
-inline constexpr float environment_tolerance = 3e-3F;
+/// Default of ViewState::tolerance; HAARVIEW.md lists error and cost by tolerance.
+inline constexpr float default_tolerance = 3e-3F;
 
-/// What was drawn.
-struct DrawnFrame {
-  std::vector<float> rgb; ///< linear, top row first
-  double accesses = 0;    ///< of textures that hold trees, on average over pixels that have any
+/// Everything that a picture of a scene depends on, apart from the scene's shapes and trees.
+struct ViewState {
+  renderer::CameraDescription camera;
+  int width = 1; ///< pixels
+  int height = 1;
+  PunctualLight punctual;                         ///< lights the scene if `environment` is null
+  std::shared_ptr<const PackedLight> environment; ///< distant light
+  Eigen::Matrix3f to_world = Eigen::Matrix3f::Identity(); ///< from the environment's frame
+  bool background = true; ///< the environment is visible where no object is
+  /// Environment: a square of the light is split while its estimated error exceeds this fraction of
+  /// the pixel's value.
+  float tolerance = default_tolerance;
+  /// Level of the trees' averages, 0 … 13, or automatic_level; beyond a tree's own levels its full
+  /// resolution. Environment: the finest level of the light's squares that is used.
+  int level = automatic_level;
+
+  bool operator==(const ViewState& other) const;
 };
 
-/// What a shader drew that leaves the number of its accesses in alpha.
-DrawnFrame read_frame(const Canvas& canvas);
+/// A picture that was read back.
+struct DrawnFrame {
+  std::vector<float> rgb; ///< linear, top row first
+  double accesses = 0;    ///< to textures that hold trees, mean over the pixels that have any
+};
 
-/// Puts a picture, tone-mapped, into an area of a framebuffer by the program of show.glsl.
-void show_picture(const Canvas& canvas, const Program& show, const Cover& cover,
-                  unsigned framebuffer, const Area& area, double exposure);
-
-/// A scene's trees and shapes in textures, and the image they are drawn to. Needs the same current
-/// context all its life, of OpenGL ES 3.0 that draws to float images, or of OpenGL 3.3; expects
-/// nothing of its state but that blending, depth, stencil and scissor tests are off.
-class FrameDrawer {
+/// A picture that is drawn from textures into a float image. Needs one current context for its
+/// whole life, of OpenGL ES 3.0 that renders to float textures, or of OpenGL 3.3; expects blending
+/// and the depth, stencil and scissor tests to be off.
+class PictureDrawer {
 public:
-  /// @param scene needed by the constructor only
-  /// @throws Error(Output) if the scene or the picture is larger than GL takes
-  FrameDrawer(const ViewScene& scene, int width, int height);
+  /// The picture that was drawn last.
+  DrawnFrame read() const;
 
-  /// Pictures of another size from now on. @throws Error(Output) if it is larger than GL takes
-  void resize(int width, int height);
-  void set_camera(const renderer::CameraDescription& camera);
-  void set_lamp(const Lamp& lamp) const;
+  /// Draws the last picture, tone-mapped, into a viewport of a framebuffer.
+  /// @param framebuffer GL's name of it; 0 is the window
+  /// @param exposure    stops
+  void show(unsigned framebuffer, const Viewport& viewport, double exposure) const;
 
-  /// The light that Lighting::Environment draws by, from now on.
-  /// @throws Error(Output) if it is larger than GL takes
-  void set_light(const PackedLight& light);
-  /// How that is turned: from its frame to the world's.
-  void turn_light(const Eigen::Matrix3f& to_world) const;
-  /// Whether it is seen where there is no object; yes if it is not said.
-  void show_background(bool shown) const;
-  void set_tolerance(float tolerance) const;
-
-  /// Draws and waits until that is done.
-  /// @param lighting Environment only after set_light()
-  /// @param level of the trees' averages, 0 … 13, or automatic_level; levels beyond a set's own are
-  ///        its full level. By Environment: of the finest squares of light that are told apart
-  /// @return milliseconds
-  double draw(Lighting lighting, int level) const;
-
-  /// The picture drawn last.
-  DrawnFrame read() const { return read_frame(*m_canvas); }
-
-  /// Puts the picture drawn last, tone-mapped, into an area of a framebuffer.
-  /// @param framebuffer GL's name for it, 0 being the window
-  /// @param exposure stops
-  void show(unsigned framebuffer, const Area& area, double exposure) const {
-    show_picture(*m_canvas, m_show, m_cover, framebuffer, area, exposure);
-  }
-
-  /// Bytes of all textures.
+  /// Size of all textures.
   std::size_t texture_bytes() const { return m_textures.bytes(); }
 
-private:
-  /// Adds textures and uniforms, or replaces those of the same names.
-  void put(const PackedScene& packed);
-  template <class Value>
-  void set(const std::string& name, const Value& value) const {
-    m_lamp.set(name, value);
-    m_environment.set(name, value);
-  }
-  void aim() const;
+protected:
+  PictureDrawer();
+  /// Makes the picture of this size. @throws Error(Output) if it exceeds the limits of this GL
+  void resize(int width, int height);
+  /// Uploads textures and sets uniforms of programs.
+  /// @throws Error(Output) if a texture exceeds the limits of this GL
+  void upload(const ShaderInputs& inputs, const std::vector<const Program*>& programs);
+  /// Draws with a program and waits until the GPU is done. @return milliseconds
+  double draw_with(const Program& program) const;
 
-  Cover m_cover;
-  Program m_lamp;
+private:
+  FullScreenTriangle m_triangle;
+  Program m_tone_map;
+  TextureSet m_textures;
+  std::optional<RenderTarget> m_target;
+};
+
+/// Pictures of a scene under a punctual light or an environment.
+class SceneDrawer : public PictureDrawer {
+public:
+  /// @param scene needed by the constructor only
+  /// @throws Error(Output) if the scene exceeds the limits of this GL
+  explicit SceneDrawer(const ViewScene& scene);
+
+  /// @return milliseconds of drawing, without the upload of a new environment
+  /// @throws Error(Output) if the picture or the environment exceeds the limits of this GL
+  double draw(const ViewState& state);
+
+private:
+  Program m_punctual;
   Program m_environment;
-  Program m_show;
-  renderer::CameraDescription m_camera;
-  std::optional<Canvas> m_canvas;
-  NamedTextures m_textures;
+  std::optional<ViewState> m_drawn;
+};
+
+/// Pictures from transfer and a light.
+class TransferDrawer : public PictureDrawer {
+public:
+  /// @param transfer of pack_transfer(), for a film of this size
+  /// @throws Error(Output) if it exceeds the limits of this GL
+  TransferDrawer(const ShaderInputs& transfer, int width, int height);
+
+  /// Sets the light, from TransferLight::rotated(). Call before draw().
+  void set_light(const ShaderInputs& light) { upload(light, {&m_relight}); }
+
+  /// @param level of the finest coefficients of light and transfer that are used, 0 … 13
+  /// @return milliseconds
+  double draw(int level) const;
+
+private:
+  Program m_relight;
 };
 
 } // namespace haarlight::view

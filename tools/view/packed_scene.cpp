@@ -1,127 +1,145 @@
-#include <view/packed_scene.h>
+#include <view/packing.h>
 
-#include <view/packed_lobes.h>
-#include <view/packed_trees.h>
-
-#include <wavelet/base/error.h>
+#include <wavelet/base/half.h>
+#include <wavelet/square/sphere_map.h>
 
 #include <algorithm>
-#include <cstring>
-#include <span>
+#include <cmath>
+#include <iterator>
 
 namespace haarlight::view {
-
-using namespace renderer;
-
 namespace {
 
-template <class T>
-void append(std::vector<std::byte>& bytes, const std::vector<T>& values) {
-  const auto from = std::as_bytes(std::span(values));
-  bytes.insert(bytes.end(), from.begin(), from.end());
+/// Sums over the light of a square: radiance, and directions with their weight.
+struct LightMoments {
+  Rgb radiance = Rgb::Zero();
+  Vec3 directions = Vec3::Zero();
+  float weight = 0;
+};
+
+using LightLevel = std::vector<LightMoments>;
+
+std::size_t square_index(int level, int x, int y) {
+  return (static_cast<std::size_t>(y) << static_cast<unsigned>(level)) +
+         static_cast<std::size_t>(x);
 }
 
-template <class T>
-PackedTexture texture(const char* sampler, Texel texel, int width, int height,
-                      const std::vector<T>& values) {
-  PackedTexture result = {sampler, texel, width, height, 0, false, {}};
-  append(result.bytes, values);
+/// Uniform light over each pixel. Black pixels have a small weight, so that their squares have a
+/// mean direction.
+LightLevel finest_light(const wavelet::Map& map, int level) {
+  const float side = 1.0F / static_cast<float>(map.size);
+  const float spread = uniform_spread * side;
+  const float least = 1e-6F * luminance(map_mean(map).cast<float>()) + 1e-30F;
+  LightLevel result(map.rgb.size() / 3);
+  for (int y = 0; y < map.size; ++y)
+    for (int x = 0; x < map.size; ++x) {
+      LightMoments& m = result[square_index(level, x, y)];
+      m.radiance = map.at(x, y);
+      m.weight = luminance(m.radiance) + least;
+      m.directions = m.weight * std::sqrt(std::max(0.0F, 1 - spread * spread)) *
+                     wavelet::square_to_sphere(Vec2((static_cast<float>(x) + 0.5F) * side,
+                                                    (static_cast<float>(y) + 0.5F) * side));
+    }
   return result;
 }
 
-PackedTexture filtered(const char* sampler, int width, int height, int depth,
-                       const std::vector<std::uint16_t>& halves) {
-  PackedTexture result = texture(sampler, Texel::Rgba16F, width, height, halves);
-  result.depth = depth;
+LightLevel coarser_light(const LightLevel& fine, int level) {
+  LightLevel result(fine.size() / 4);
+  for (int y = 0; y < 1 << level; ++y)
+    for (int x = 0; x < 1 << level; ++x)
+      for (int q = 0; q < 4; ++q) {
+        const LightMoments& part = fine[square_index(level + 1, 2 * x + q % 2, 2 * y + q / 2)];
+        LightMoments& sum = result[square_index(level, x, y)];
+        sum.radiance += 0.25F * part.radiance;
+        sum.directions += 0.25F * part.directions;
+        sum.weight += 0.25F * part.weight;
+      }
   return result;
+}
+
+float spread_of(const LightMoments& m) {
+  const float length = m.directions.norm() / m.weight;
+  return std::sqrt(std::max(0.0F, (1 - length) * (1 + length)));
+}
+
+template <class Vector>
+void append_texel(std::vector<std::uint16_t>& texels, const Vector& rgb, float alpha) {
+  for (int c = 0; c < 3; ++c)
+    texels.push_back(wavelet::float_to_half(rgb[c]));
+  texels.push_back(wavelet::float_to_half(alpha));
 }
 
 /// The two texels of each object that scene.glsl reads.
-std::vector<float> object_texels(const ViewScene& scene) {
-  const ShapeSet& shapes = scene.shapes();
-  std::vector<float> texels(8 * static_cast<std::size_t>(shapes.size()));
+TextureData pack_objects(const ViewScene& scene) {
+  const renderer::ShapeSet& shapes = scene.shapes();
+  const int count = shapes.size();
+  std::vector<float> texels(8 * static_cast<std::size_t>(count));
   const auto put = [&](int object, const Eigen::Vector3d& v, double w, float kind) {
     const Columns& columns = scene.columns_of(object);
-    const float both[8] = {static_cast<float>(v.x()),
-                           static_cast<float>(v.y()),
-                           static_cast<float>(v.z()),
-                           static_cast<float>(w),
-                           kind,
-                           static_cast<float>(columns.first),
-                           static_cast<float>(columns.count),
-                           static_cast<float>(columns.levels)};
-    std::copy(both, both + 8, &texels[8 * static_cast<std::size_t>(object)]);
+    const float values[8] = {static_cast<float>(v.x()),
+                             static_cast<float>(v.y()),
+                             static_cast<float>(v.z()),
+                             static_cast<float>(w),
+                             kind,
+                             static_cast<float>(columns.first),
+                             static_cast<float>(columns.count),
+                             static_cast<float>(columns.levels)};
+    std::copy(values, values + 8, &texels[8 * static_cast<std::size_t>(object)]);
   };
-  for (const detail::Solid& solid : shapes.solids())
+  for (const renderer::detail::Solid& solid : shapes.solids())
     put(solid.object, solid.center, solid.radius, 0);
-  for (const detail::WorldPlane& plane : shapes.planes())
+  for (const renderer::detail::WorldPlane& plane : shapes.planes())
     put(plane.object, plane.normal, plane.height, 1);
-  return texels;
+  return texture_data("objects", TexelFormat::Rgba32F, 2, std::max(count, 1), texels);
 }
 
-void check_nodes(const std::vector<wavelet::TreeView>& trees) {
-  std::uint64_t nodes = 0;
-  for (const wavelet::TreeView& tree : trees)
-    nodes += tree.node_count;
-  if (nodes >= 1U << 28U)
-    throw_output_error("GL", "trees of " + std::to_string(nodes) +
-                                 " nodes are to be shown; 2^28 - 1 are possible");
-}
-
-void add_objects(const ViewScene& scene, PackedScene& packed) {
-  const int count = scene.shapes().size();
-  packed.textures.push_back(
-      texture("objects", Texel::Rgba32F, 2, std::max(count, 1), object_texels(scene)));
-  packed.integers.emplace_back("object_count", count);
+void append_inputs(ShaderInputs& inputs, ShaderInputs more) {
+  std::move(more.textures.begin(), more.textures.end(), std::back_inserter(inputs.textures));
+  std::move(more.floats.begin(), more.floats.end(), std::back_inserter(inputs.floats));
+  std::move(more.integers.begin(), more.integers.end(), std::back_inserter(inputs.integers));
 }
 
 } // namespace
 
-PackedScene pack_scene(const ViewScene& scene) {
-  check_nodes(scene.trees());
-  const PackedTrees trees = pack_trees(scene.trees());
-  PackedScene packed;
-  packed.textures = {
-      filtered("tops", slice_width, slice_height, trees.columns, trees.tops),
-      texture("starts", Texel::R32Ui, top_side * top_side, trees.columns, trees.starts),
-      texture("scales", Texel::R32F, trees.columns, 1, trees.scales),
-      texture("links", Texel::R32Ui, nodes_per_row, trees.node_rows, trees.links),
-      texture("coefficients", Texel::Rgba16F, 3 * nodes_per_row, trees.node_rows,
-              trees.coefficients)};
-  packed.floats = {{"top_unit", {trees.top_unit}}};
-  add_objects(scene, packed);
-  return packed;
+PackedLight pack_light(const wavelet::Map& map) {
+  PackedLight light;
+  while (1 << light.levels < map.size)
+    ++light.levels;
+  const float unit = half_unit(*std::max_element(map.rgb.begin(), map.rgb.end()));
+  std::vector<std::uint16_t> radiance;
+  std::vector<std::uint16_t> directions;
+  LightLevel level = finest_light(map, light.levels);
+  for (int l = light.levels; l >= 0; --l) {
+    for (const LightMoments& m : level) {
+      append_texel(radiance, Rgb(m.radiance / unit), spread_of(m));
+      append_texel(directions, Vec3(m.directions.normalized()), 0);
+    }
+    if (l > 0)
+      level = coarser_light(level, l - 1);
+  }
+  light.inputs.textures = {
+      texture_data("light_squares", TexelFormat::Rgba16F, map.size, map.size, radiance),
+      texture_data("light_directions", TexelFormat::Rgba16F, map.size, map.size, directions)};
+  for (TextureData& texture : light.inputs.textures)
+    texture.mips = true;
+  light.inputs.floats = {{"light_unit", {unit}}};
+  light.inputs.integers = {{"light_levels", light.levels}};
+  return light;
 }
 
-PackedScene pack_reflectances(const ViewScene& scene) {
+ShaderInputs pack_scene(const ViewScene& scene, bool lobes) {
+  ShaderInputs inputs = pack_trees(scene.trees());
+  inputs.textures.push_back(pack_objects(scene));
+  inputs.integers.emplace_back("object_count", scene.shapes().size());
+  if (!lobes)
+    return inputs;
   std::vector<std::span<const wavelet::TreeView>> sets;
   for (const Columns& columns : scene.columns())
     sets.push_back(std::span(scene.trees())
                        .subspan(static_cast<std::size_t>(columns.first),
                                 static_cast<std::size_t>(columns.count)));
-  const PackedLobes lobes = pack_lobes(sets);
-  PackedScene packed;
-  packed.textures = {
-      filtered("lobes", lobe_width, lobe_row(lobes.levels + 1), lobes.columns, lobes.texels)};
-  packed.floats = {{"lobe_unit", {lobes.unit}}};
-  packed.integers = {{"lobe_levels", lobes.levels}};
-  return packed;
-}
-
-PackedScene pack_light_textures(const PackedLight& light) {
-  const int side = 1 << light.levels;
-  PackedTexture radiance = {"light_squares", Texel::Rgba16F, side, side, 0, true, {}};
-  PackedTexture directions = radiance;
-  directions.sampler = "light_directions";
-  for (auto level = light.squares.rbegin(); level != light.squares.rend(); ++level) {
-    append(radiance.bytes, level->radiance);
-    append(directions.bytes, level->directions);
-  }
-  PackedScene packed;
-  packed.textures = {std::move(radiance), std::move(directions)};
-  packed.floats = {{"light_unit", {light.unit}}};
-  packed.integers = {{"light_levels", light.levels}};
-  return packed;
+  append_inputs(inputs, pack_lobes(sets));
+  return inputs;
 }
 
 } // namespace haarlight::view

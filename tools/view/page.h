@@ -1,31 +1,26 @@
 #pragma once
-// A scene, its trees and the shaders as one HTML file that needs nothing else but a browser.
+// A scene, its trees and the shaders as one HTML file for a browser with WebGL 2.
 
 #include <view/frame.h>
-#include <view/view_scene.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace haarlight::view {
 
-/// What the page shows at first, and says.
 struct PageOptions {
   std::string title;
   std::string provenance;
-  renderer::SceneDescription film; ///< its camera and size, and whether the light is seen
-  Lamp lamp;
-  std::optional<PackedLight> light; ///< with which it also has Lighting::Environment
-  Eigen::Matrix3f to_world = Eigen::Matrix3f::Identity(); ///< from the light's frame
-  int level = automatic_level;
-  float tolerance = environment_tolerance;
+  ViewState state;              ///< the initial view; the page offers an environment if it has one
   double exposure = 0;          ///< stops
-  std::vector<float> reference; ///< RGB that the page's #check compares with, or nothing
+  std::vector<float> reference; ///< RGB that the page's #check compares with, or empty
 };
 
-/// HTML with WebGL 2, everything within. Lighting is by the environment if there is one.
-/// @throws Error(Output) if there are 2^28 nodes or more
+/// The name of a format in page.js.
+const char* texel_format_name(TexelFormat format);
+
+/// The whole page, which needs no other file and no network.
+/// @throws Error(Output) if the scene has 2^28 nodes or more
 std::string view_page(const ViewScene& scene, const PageOptions& options);
 
 } // namespace haarlight::view

@@ -1,28 +1,22 @@
 #pragma once
-// The files of this folder that are not C++. Shaders are in what GLSL ES 3.00 and GLSL 3.30 have in
-// common, without the line that says which of them it is.
+// The GLSL, HTML, CSS and JavaScript files of this folder as text. Shaders are written in the
+// common subset of GLSL ES 3.00 and GLSL 3.30, without the #version line.
 
 #include <string>
 
 namespace haarlight::view {
 
-/// One triangle over the whole image.
-std::string covering_vertex_shader();
+/// The vertex shader of a triangle that covers the image.
+std::string full_screen_shader();
 
-/// lamp.glsl and what it rests on.
-std::string lamp_fragment_shader();
+// Fragment shaders, each with the files it includes.
+std::string punctual_shader();    ///< punctual.glsl
+std::string environment_shader(); ///< environment.glsl
+std::string relight_shader();     ///< relight.glsl
+std::string tone_map_shader();    ///< tone_map.glsl
 
-/// environment.glsl and what it rests on.
-std::string environment_fragment_shader();
-
-/// relight.glsl and what it rests on.
-std::string relight_fragment_shader();
-
-/// show.glsl and what it rests on.
-std::string show_fragment_shader();
-
-/// page.html, with marks where the others go, and the scripts.
-std::string page_html();
-std::string page_script();
+std::string page_body();   ///< page.html, with a mark where the scene goes
+std::string page_style();  ///< page.css
+std::string page_script(); ///< page.js
 
 } // namespace haarlight::view

@@ -10,7 +10,7 @@ using namespace renderer;
 
 namespace {
 
-SceneDescription sphere_of(const std::string& path) {
+SceneDescription sphere_scene(const std::string& path) {
   SceneDescription scene;
   scene.path = path;
   scene.camera.from = Vec3(0, 0, 4.5F);
@@ -25,12 +25,12 @@ TreeTable stored_trees(const std::string& path) {
   TreeTable trees(path, wavelet::SetKind::Brdf);
   if (!trees.info().cosine || trees.info().rolls != 1)
     throw_input_error(path,
-                      "holds a set with rolls or without the cosine; one that brdf2maps makes "
-                      "by default is needed");
+                      "holds a set with rolls or without the cosine; expected one that brdf2maps "
+                      "makes by default");
   return trees;
 }
 
-/// From the file that is named, else made.
+/// Stored trees, else trees made from the material's data.
 TreeTable trees_of(const MaterialDescription& material) {
   if (!material.haar.empty())
     return stored_trees(material.haar);
@@ -45,7 +45,20 @@ TreeTable trees_of(const MaterialDescription& material) {
 
 SceneDescription describe_view(const std::string& path) {
   const bool trees = wavelet::begins_as_tree_set(InputFile(path));
-  return trees ? sphere_of(path) : load_scene(path);
+  return trees ? sphere_scene(path) : load_scene(path);
+}
+
+LightDescription describe_light(const std::string& path) {
+  LightDescription light;
+  (wavelet::begins_as_tree_set(InputFile(path)) ? light.haar : light.probe) = path;
+  return light;
+}
+
+Eigen::Matrix3f light_to_world(const Light& light) {
+  Eigen::Matrix3f to_world;
+  for (int axis = 0; axis < 3; ++axis)
+    to_world.col(axis) = light.to_world(Vec3::Unit(axis));
+  return to_world;
 }
 
 ViewScene::ViewScene(SceneDescription description) : m_description(std::move(description)) {
@@ -60,8 +73,8 @@ void ViewScene::check_shapes() const {
   for (const detail::Solid& solid : m_shapes.solids())
     if (solid.kind != detail::SolidKind::WorldSphere)
       throw_input_error(m_description.path, "objects[" + std::to_string(solid.object) +
-                                                "] is neither a sphere nor a plane; others cannot "
-                                                "be viewed");
+                                                "] is neither a sphere nor a plane, the only "
+                                                "shapes haarview shows");
 }
 
 void ViewScene::add_material(const MaterialDescription& description) {

@@ -1,6 +1,7 @@
 #pragma once
-// What a viewer shows: spheres and planes, their trees and one lamp. No GL here.
+// The scenes that the viewer shows: spheres and planes with stored trees. Nothing here calls GL.
 
+#include <renderer/light/light.h>
 #include <renderer/material/material.h>
 #include <renderer/scene/camera.h>
 #include <renderer/scene/scene.h>
@@ -12,14 +13,18 @@
 
 namespace haarlight::view {
 
-/// One light, from infinitely far or from a point.
-struct Lamp {
-  bool at_point = false;
-  Vec3 place = Vec3(0.4F, 0.6F, 0.7F); ///< direction towards it (any length but zero), or position
-  Rgb irradiance = Rgb::Ones(); ///< of a surface facing it, W m⁻²; of a point's, at distance 1
+/// A directional or a point light.
+struct PunctualLight {
+  bool is_point = false;
+  Vec3 place = Vec3(0.4F, 0.6F, 0.7F); ///< position, or direction towards the light (any length
+                                       ///< but zero)
+  Vec3 irradiance = Vec3::Ones(); ///< R, G, B of a surface that faces the light, W m⁻²; for a point
+                                  ///< light at distance 1
+
+  bool operator==(const PunctualLight&) const = default;
 };
 
-/// The columns of one material's trees among those of all.
+/// The range of one material's trees among those of all materials.
 struct Columns {
   int first = 0;
   int count = 0;
@@ -30,7 +35,13 @@ struct Columns {
 /// @throws Error(Input) if it is neither
 renderer::SceneDescription describe_view(const std::string& path);
 
-/// A scene's shapes and trees, ready to be shown; its light, background and emission are not.
+/// An image or the trees of a light as a scene would name it. @throws Error(Input) if it is missing
+renderer::LightDescription describe_light(const std::string& path);
+
+/// The rotation from a light's frame to the world.
+Eigen::Matrix3f light_to_world(const renderer::Light& light);
+
+/// A scene's shapes and trees; its light, background and emission are ignored.
 class ViewScene {
 public:
   /// @throws Error(Input) if a file is broken or of the wrong kind, or a shape is neither sphere
@@ -41,18 +52,18 @@ public:
   const renderer::SceneDescription& description() const { return m_description; }
   const renderer::ShapeSet& shapes() const { return m_shapes; }
 
-  /// Of all materials, one after the other.
+  /// Trees of all materials, in their order.
   const std::vector<wavelet::TreeView>& trees() const { return m_trees; }
-  /// Of each material, among them.
+  /// The range of each material in trees().
   const std::vector<Columns>& columns() const { return m_columns; }
-  /// Of the material of an object.
+  /// The range of an object's material.
   const Columns& columns_of(int object) const { return m_columns[material_of(object)]; }
-  /// Of the deepest tree.
+  /// Levels of the deepest tree.
   int levels() const {
     const auto deeper = [](const auto& a, const auto& b) { return a.levels < b.levels; };
     return std::max_element(m_columns.begin(), m_columns.end(), deeper)->levels;
   }
-  /// What these trees say of an object, all levels deep.
+  /// The reflectance of an object that its trees store, at full resolution.
   const renderer::Reflectance& reflectance_of(int object) const {
     return *m_reflectances[material_of(object)];
   }

@@ -1,4 +1,3 @@
-#include <view/transfer_window.h>
 #include <view/window.h>
 
 #include <wavelet/base/error.h>
@@ -6,20 +5,20 @@
 namespace haarlight::view {
 namespace {
 
-[[noreturn]] void refuse() {
+[[noreturn]] void throw_window_missing() {
   throw_output_error("window", "was left out of this build, which found no GLFW and Dear ImGui "
-                               "(--frame draws without a window)");
+                               "(--image draws without a window)");
 }
 
 } // namespace
 
 WindowReport show_window(const WindowInput&, const std::function<void(const std::string&)>&) {
-  refuse();
+  throw_window_missing();
 }
 
 WindowReport show_transfer(const renderer::Transfer&, const renderer::SceneDescription&,
                            const TransferWindowInput&) {
-  refuse();
+  throw_window_missing();
 }
 
 } // namespace haarlight::view

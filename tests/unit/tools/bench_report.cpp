@@ -1,9 +1,7 @@
 // The command line of haarbench, and its reports.
-#include <bench/look.h>
-#include <bench/pictures.h>
 #include <bench/plan.h>
+#include <bench/report.h>
 #include <bench/results.h>
-#include <bench/summary.h>
 
 #include <html/plot.h>
 
@@ -99,13 +97,13 @@ TEST_CASE("the least error wins, among what is comparable", "[bench]") {
 }
 
 TEST_CASE("plots hold what can be shown on logarithmic axes", "[bench]") {
-  const Look look = look_of(renderer::SamplerKind::Mis);
+  const PlotStyle style = style_of(renderer::SamplerKind::Mis);
   const std::string plot =
-      log_plot({{"a<b", look, {{16, 0.1}, {64, 0}, {256, 0.001}}}, {"absent", look, {{16, 0}}}},
+      log_plot({{"a<b", style, {{16, 0.1}, {64, 0}, {256, 0.001}}}, {"absent", style, {{16, 0}}}},
                {"Title", "x", "y"});
   CHECK(plot.find("a&lt;b") != std::string::npos);
   CHECK(plot.find("absent") == std::string::npos);
-  for (const std::string& text : {plot, log_plot({}, {}), log_plot({{"one", look, {{1, 1}}}}, {})})
+  for (const std::string& text : {plot, log_plot({}, {}), log_plot({{"one", style, {{1, 1}}}}, {})})
     CHECK((text.find("nan") == std::string::npos && text.find("inf") == std::string::npos));
 }
 

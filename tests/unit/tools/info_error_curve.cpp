@@ -1,7 +1,7 @@
 // haarinfo's error by coefficients kept, against sorting.
 #include "fixture.h"
 
-#include <info/error_curve.h>
+#include <info/page.h>
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/transform/compress.h>

@@ -1,5 +1,5 @@
-// What relight.glsl reads: transfer by pixel, and the light's coefficients.
-#include <view/transfer_packing.h>
+// Textures of relight.glsl: transfer by pixel, and the coefficients of the light.
+#include <view/transfer.h>
 
 #include <wavelet/transform/compress.h>
 
@@ -31,27 +31,27 @@ wavelet::Tree tree_of(const wavelet::Map& map, float tolerance) {
   return compress_map(map, options, report);
 }
 
-std::uint32_t number(const PackedTexture& texture, std::size_t index) {
+std::uint32_t number(const TextureData& texture, std::size_t index) {
   std::uint32_t value = 0;
   std::memcpy(&value, texture.bytes.data() + 4 * index, 4);
   return value;
 }
 
-float real(const PackedTexture& texture, std::size_t index) {
+float real(const TextureData& texture, std::size_t index) {
   return std::bit_cast<float>(number(texture, index));
 }
 
 /// Channel c of the difference m of a texel, in the texel's unit.
-int difference(const PackedTexture& texture, std::size_t place, unsigned m, unsigned c) {
+int difference(const TextureData& texture, std::size_t place, unsigned m, unsigned c) {
   const int bits = static_cast<int>(number(texture, 4 * place + m) >> (10 * c) & 1023U);
   return bits < 512 ? bits : bits - 1024;
 }
 
-/// A pixel's channel as relight.glsl finds it, over the area of the sphere.
-double relit(const PackedScene& transfer, const PackedScene& light, std::size_t pixel, unsigned c,
+/// A pixel's channel as relight.glsl computes it, over the area of the sphere.
+double relit(const ShaderInputs& transfer, const ShaderInputs& light, std::size_t pixel, unsigned c,
              int level) {
-  const PackedTexture& nodes = transfer.textures[0];
-  const PackedTexture& lights = light.textures[0];
+  const TextureData& nodes = transfer.textures[0];
+  const TextureData& lights = light.textures[0];
   const std::size_t first = number(transfer.textures[1], pixel);
   const auto count = static_cast<std::size_t>(real(transfer.textures[2], 4 * pixel + 3));
   double sum = static_cast<double>(real(transfer.textures[2], 4 * pixel + c)) *
@@ -81,9 +81,9 @@ std::vector<renderer::FilmPoint> seen(std::size_t count) {
 TEST_CASE("packed transfer keeps inner products with a light", "[view]") {
   const std::vector<wavelet::Tree> trees = {tree_of(lit(16, 1), 0), tree_of(lit(16, 3), 0.3F)};
   const std::vector<wavelet::TreeView> views = {trees[0].view(), trees[1].view()};
-  const PackedScene transfer = pack_transfer(views, seen(2), 2, 1);
+  const ShaderInputs transfer = pack_transfer(views, seen(2), 2, 1);
   const wavelet::DenseCoefficients dense(lit(16, 5));
-  const PackedScene light = pack_coefficients(dense);
+  const ShaderInputs light = pack_light_coefficients(dense);
   std::vector<Rgb> truth(2);
   dense.inner_products(views, truth);
   for (std::size_t pixel = 0; pixel < 2; ++pixel)
@@ -92,11 +92,11 @@ TEST_CASE("packed transfer keeps inner products with a light", "[view]") {
             Approx(static_cast<double>(truth[pixel][c])).epsilon(0.01));
 }
 
-TEST_CASE("packed transfer ends where a level does", "[view]") {
+TEST_CASE("packed transfer at a level uses the coefficients above that level", "[view]") {
   const wavelet::Tree tree = tree_of(lit(16, 1), 0);
-  const PackedScene transfer = pack_transfer(std::vector{tree.view()}, seen(1), 1, 1);
+  const ShaderInputs transfer = pack_transfer(std::vector{tree.view()}, seen(1), 1, 1);
   const wavelet::Map map = lit(16, 5);
-  const PackedScene light = pack_coefficients(wavelet::DenseCoefficients(map));
+  const ShaderInputs light = pack_light_coefficients(wavelet::DenseCoefficients(map));
   for (int level = 0; level <= 4; ++level) {
     const wavelet::Map coarse = tree_of(map, 0).view().reconstruct(level);
     const wavelet::Map own = tree.view().reconstruct(level);
@@ -108,13 +108,13 @@ TEST_CASE("packed transfer ends where a level does", "[view]") {
   }
 }
 
-TEST_CASE("pixels that meet nothing are marked, trees without nodes are their means", "[view]") {
+TEST_CASE("pixels that hit no object are marked; trees without nodes are their means", "[view]") {
   wavelet::Map even(4);
   std::fill(even.rgb.begin(), even.rgb.end(), 0.25F);
   const wavelet::Tree tree = tree_of(even, 0);
   std::vector<renderer::FilmPoint> points = seen(2);
   points[0].hit.object = -1;
-  const PackedScene transfer = pack_transfer(std::vector{tree.view(), tree.view()}, points, 1, 2);
+  const ShaderInputs transfer = pack_transfer(std::vector{tree.view(), tree.view()}, points, 1, 2);
   CHECK(real(transfer.textures[2], 3) == -1.0F);
   CHECK(real(transfer.textures[2], 7) == 0.0F);
   CHECK(real(transfer.textures[2], 4) == 0.25F);
