@@ -5,7 +5,7 @@
 
 #include <brdf/brdf_maps.h>
 #include <brdf/brdf_properties.h>
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 
 #include <array>
 

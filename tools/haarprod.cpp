@@ -3,7 +3,6 @@
 #include <support/tool.h>
 
 #include <wavelet/base/error.h>
-#include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>
 #include <wavelet/file/tree_set.h>
 #include <wavelet/product/multiply.h>
@@ -69,7 +68,7 @@ const NamedTree* out_of_frame(const std::vector<NamedTree>& trees) {
   const NamedTree* first = nullptr;
   for (const NamedTree& tree : trees) {
     const wavelet::SetInfo& info = tree.set->info();
-    if (info.kind == wavelet::SetKind::Generic)
+    if (info.kind != wavelet::SetKind::Brdf && info.kind != wavelet::SetKind::Light)
       continue;
     if (first == nullptr)
       first = &tree;

@@ -12,7 +12,7 @@
 
 #include <renderer/scene/scene.h>
 #include <renderer/transfer/transfer.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <bit>
 #include <chrono>

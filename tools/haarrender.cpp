@@ -9,7 +9,7 @@
 #include <renderer/path/path.h>
 #include <renderer/scene/scene.h>
 #include <renderer/visibility/product_integral.h>
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/file/output_file.h>
 
 using namespace haarlight;
@@ -75,7 +75,7 @@ void declare_sampling(tool::Tool& app, RenderOptions& render) {
             "Maximum number of leaves of a product; product-visibility uses at most 25 per sample, "
             "or 400 in total if there are possible occluders",
             64, 1 << 20);
-  app.value(render.sampling.product.drift_bound, "--product-drift",
+  app.value(render.sampling.product.reuse_variance_bound, "--product-drift",
             "Relative variance per sample that reuse of a neighbouring pixel's product may add; 0 "
             "= no reuse",
             0, 100);

@@ -4,9 +4,11 @@
 
 #include <view/commands.h>
 
+#include <renderer/transfer/relight.h>
 #include <wavelet/base/parallel.h>
+#include <wavelet/file/input_file.h>
 #include <wavelet/file/output_file.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <cstdlib>
 #include <initializer_list>
@@ -32,11 +34,13 @@ void declare_light(tool::Tool& app, Options& options) {
                      "Probe image or trees of a light that replaces the scene's; implies "
                      "--environment");
   app.alias("--light", "--probe");
+  app.alias("--against", "--beside");
+  app.alias("--tolerance", "--split-threshold");
   app.value(options.light_level, "--light-level",
             "With --environment: store the light as 2^N squares a side [10; 8 for --html alone]", 2,
             11);
   app.value(
-      options.tolerance, "--tolerance",
+      options.tolerance, "--split-threshold",
       "With --environment: split a square of the light while its estimated error exceeds this "
       "fraction of the pixel's value",
       1e-4F, 1);
@@ -53,7 +57,7 @@ void declare_comparison(tool::Tool& app, Options& options) {
 }
 
 void declare_window(tool::Tool& app, Options& options) {
-  app.optional_input(options.second, "--against", "FILE.haar|SCENE.json",
+  app.optional_input(options.second, "--beside", "FILE.haar|SCENE.json",
                      "Window: show this in a second pane; trees replace those of the scene's first "
                      "material");
   app.optional_inputs(options.materials, "--material", "FILE.haar",
@@ -118,8 +122,8 @@ void refuse(const tool::Tool& app, std::initializer_list<const char*> names,
 void check_window(const tool::Tool& app, const Options& options) {
   if (!options.shows_window())
     refuse(app,
-           {"--against", "--material", "--watch", "--no-panel", "--screenshot", "--frames",
-            "--turn", "--reloads"},
+           {"--beside", "--material", "--watch", "--no-panel", "--screenshot", "--frames", "--turn",
+            "--reloads"},
            "needs a window, without --image and --html");
   else
     refuse(app, {"--repeat", "--compare", "--reference"}, "needs --image or --html");
@@ -142,7 +146,7 @@ void check(const tool::Tool& app, const Options& options) {
     refuse(app, {"--light-direction", "--light-position", "--irradiance"},
            "has no effect with --environment");
   else
-    refuse(app, {"--light-level", "--tolerance"}, "needs --environment");
+    refuse(app, {"--light-level", "--split-threshold"}, "needs --environment");
   check_window(app, options);
   for (const std::string& output : {options.frame, options.page, options.screenshot})
     if (!output.empty())
@@ -151,8 +155,7 @@ void check(const tool::Tool& app, const Options& options) {
 
 bool is_transfer(const std::string& path) {
   return wavelet::file_form(path) &&
-         wavelet::open_tree_set(path, wavelet::Check::WhenUsed).info().provenance.get("transfer") ==
-             "1";
+         renderer::is_transfer(wavelet::open_tree_set(path, wavelet::Check::WhenUsed).info());
 }
 
 int view_input(const tool::Tool& app, Options& options) {
@@ -167,7 +170,7 @@ int view_input(const tool::Tool& app, Options& options) {
   }
   refuse(app,
          {"--size", "--light-direction", "--light-position", "--irradiance", "--environment",
-          "--light-level", "--tolerance", "--html", "--against", "--material", "--watch",
+          "--light-level", "--split-threshold", "--html", "--beside", "--material", "--watch",
           "--reloads"},
          "does not apply to transfer; --rotate and --probe change its light");
   return view_transfer(app, options);

@@ -8,7 +8,7 @@
 #include <image/map_set_exr.h>
 
 #include <wavelet/base/error.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 using namespace haarlight;
 

@@ -4,7 +4,7 @@
 
 #include <probe/probe_maps.h>
 #include <probe/read_probe.h>
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 
 #include <bit>
 

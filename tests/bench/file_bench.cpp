@@ -1,6 +1,6 @@
 // Opening .haar files, and packing and unpacking them.
 // Usage: file_bench FILE.haar [options of the benchmark library]
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 #include <wavelet/transform/compress.h>
 
 #include <benchmark/benchmark.h>

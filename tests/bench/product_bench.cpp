@@ -91,9 +91,9 @@ RotatedReflectance reflectance_at(const Pyramid& lobes, const Vec3& n, const Vec
   r.reflection = reflection_frame(n, wo);
   const float c = std::clamp(std::acos(r.reflection.cos_theta_r) * (2 / pi) * theta_cells - 0.5F,
                              0.0F, theta_cells - 1.001F);
-  r.entry0 = static_cast<int>(c);
-  r.entry1 = r.entry0 + 1;
-  r.blend = c - static_cast<float>(r.entry0);
+  r.theta_index0 = static_cast<int>(c);
+  r.theta_index1 = r.theta_index0 + 1;
+  r.blend = c - static_cast<float>(r.theta_index0);
   return r;
 }
 
@@ -137,7 +137,7 @@ void following_product(benchmark::State& state) {
   for (auto _ : state) {
     turn = turn > 1.4F ? -1.4F : turn + 1.0F / 256;
     const Vec3 n(std::sin(turn), 0, std::cos(turn));
-    leaves += product.follow(reflectance_at(lobes, n, Vec3::UnitZ()), {}).leaf_count();
+    leaves += product.build_or_reuse(reflectance_at(lobes, n, Vec3::UnitZ()), {}).leaf_count();
   }
   state.counters["leaves"] =
       benchmark::Counter(static_cast<double>(leaves), benchmark::Counter::kAvgIterations);
@@ -217,10 +217,9 @@ void synchronous_product(benchmark::State& state) {
   const Tree light = tree_of(light_map(map_size), 5e-4);
   const Tree lobe = tree_of(lobe_map(2, static_cast<float>(state.range(0))), 5e-4);
   const TreeFactor factors[2] = {TreeFactor(light.view()), TreeFactor(lobe.view())};
-  const Factor* const pointers[2] = {&factors[0], &factors[1]};
   SynchronousProduct product;
   for (auto _ : state)
-    benchmark::DoNotOptimize(product.build(pointers).nodes().data());
+    benchmark::DoNotOptimize(product.build(factors).nodes().data());
 }
 BENCHMARK(synchronous_product)->Arg(10)->Arg(300)->Arg(5000);
 
@@ -233,13 +232,10 @@ void product_of_n_trees(benchmark::State& state) {
   std::vector<TreeFactor> factors;
   for (const Tree& tree : trees)
     factors.emplace_back(tree.view());
-  std::vector<const Factor*> pointers;
-  for (const TreeFactor& factor : factors)
-    pointers.push_back(&factor);
   SynchronousProduct product;
   std::size_t squares = 0;
   for (auto _ : state)
-    squares += product.build(pointers).nodes().size();
+    squares += product.build(factors).nodes().size();
   state.counters["squares"] =
       benchmark::Counter(static_cast<double>(squares), benchmark::Counter::kAvgIterations);
   state.counters["time/square"] = benchmark::Counter(

@@ -9,9 +9,10 @@
 // trees are synthetic. Ends with each way's time relative to the dense one's, best of all
 // repetitions: ask for --benchmark_repetitions=N --benchmark_enable_random_interleaving=true.
 
+#include "reference_basis.h"
+
 #include <wavelet/file/tree_set.h>
 #include <wavelet/product/synchronous_product.h>
-#include <wavelet/reference/reference.h>
 #include <wavelet/square/sphere_map.h>
 #include <wavelet/transform/compress.h>
 
@@ -116,9 +117,8 @@ void add_quadrants(const TreeView& tree, std::uint32_t node, const Square& s,
   squares.insert(s);
   if (node == no_node)
     return;
-  for (int q = 0; q < 4; ++q)
-    add_quadrants(tree, tree.child(node, static_cast<unsigned>(q)), child(s, q & 1, q >> 1),
-                  squares);
+  for (unsigned q = 0; q < 4; ++q)
+    add_quadrants(tree, tree.child(node, q), s.quadrant(q), squares);
 }
 
 struct Factors {
@@ -216,16 +216,12 @@ struct DenseProduct {
 };
 
 struct SynchronousRun {
-  TreeFactor light;
-  TreeFactor brdf;
+  std::array<TreeFactor, 2> factors;
   SynchronousProduct product = {};
   explicit SynchronousRun(const Factors& f)
-      : light(f.light.tree.view()), brdf(f.brdf.tree.view()) {}
+      : factors{TreeFactor(f.light.tree.view()), TreeFactor(f.brdf.tree.view())} {}
 
-  Rgb operator()() {
-    const wavelet::Factor* const factors[] = {&light, &brdf};
-    return product.build(factors).integral();
-  }
+  Rgb operator()() { return product.build(factors).integral(); }
 };
 
 /// PRODUCT: all coefficients.

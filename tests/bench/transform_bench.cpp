@@ -126,35 +126,9 @@ void largest(benchmark::internal::Benchmark* b) {
   b->UseManualTime()->Iterations(1)->ArgNames({"size", "channels"})->Args({8192, 1});
 }
 
-/// Time is of the whole batch; the ratio is to memcpy of it by one thread.
-void batch(benchmark::State& state) {
-  const auto size = static_cast<int>(state.range(0));
-  const auto count = static_cast<std::size_t>(state.range(1));
-  auto images = random_image<float>(static_cast<std::size_t>(size) * size * count);
-  std::vector<float> copy(images.size());
-  Best copying;
-  Best forward;
-  Best inverse;
-  for (auto _ : state) {
-    copying.time([&] { std::memcpy(copy.data(), images.data(), images.size() * sizeof(float)); });
-    forward.time([&] { haar_forward_batch(images.data(), count, size, 1); });
-    inverse.time([&] { haar_inverse_batch(images.data(), count, size, 1); });
-    state.SetIterationTime(forward.least);
-  }
-  state.counters["forward_us"] = 1e6 * forward.least;
-  state.counters["forward/memcpy"] = forward.least / copying.least;
-  state.counters["inverse/memcpy"] = inverse.least / copying.least;
-}
-
 BENCHMARK_TEMPLATE(transform, float)->Apply(all_sizes);
 BENCHMARK_TEMPLATE(transform, double)->Apply(all_sizes);
 BENCHMARK_TEMPLATE(transform, float)->Apply(largest);
-BENCHMARK(batch)
-    ->UseManualTime()
-    ->Iterations(50)
-    ->ArgNames({"size", "count"})
-    ->Args({256, 64})
-    ->Args({1024, 16});
 
 } // namespace
 

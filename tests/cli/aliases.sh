@@ -46,6 +46,21 @@ for command in apply sweep; do
 done
 hidden --frames haarrelight sweep
 
+if [ -x "$bin/haarview" ]; then
+  make_brdf brdf
+  renamed --export --html view.html haarview brdf.haar --size 8x8 @ view.html
+  renamed --light --probe view.html haarview brdf.haar --size 8x8 --html view.html @ sky.hdr
+  renamed --tolerance --split-threshold view.html haarview brdf.haar --size 8x8 --probe sky.hdr --html view.html @ 0.1
+  for old in --frame --export --tolerance --light --against; do
+    hidden "$old" haarview
+  done
+  expect 2 haarview brdf.haar --frame picture.jpg
+  says "--image: 'picture.jpg'"
+  expect 2 haarview brdf.haar --html view.html --against brdf.haar
+  says "--beside: "
+  rm brdf.binary brdf.haar view.html
+fi
+
 # messages use the present spelling, and a name after "--" is no option
 expect 2 haarprod studio.haar --tolerance x
 says "--threshold: 'x'"

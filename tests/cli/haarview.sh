@@ -102,7 +102,7 @@ expect 2 haarview brdf.haar --image picture.exr --level 14
 expect 2 haarview brdf.haar --image picture.exr --light-direction 0,0,0
 expect 2 haarview brdf.haar --image picture.exr --light-direction 0,0,1 --light-position 0,0,1
 expect 2 haarview brdf.haar --image picture.exr --environment --light-direction 0,0,1
-expect 2 haarview brdf.haar --image picture.exr --tolerance 0.1
+expect 2 haarview brdf.haar --image picture.exr --split-threshold 0.1
 expect 2 haarview brdf.haar --image picture.exr --environment
 expect 3 haarview brdf.haar --image picture.exr --probe brdf.haar
 expect 3 haarview scene.json --image picture.exr --reference integral.exr

@@ -78,7 +78,7 @@ saved again brdf.haar --frames 3 --turn 40
 same turned.png again.png
 saved round brdf.haar --frames 2 --turn 360
 saved other other.haar --frames 1
-saved beside brdf.haar --against other.haar --frames 1
+saved beside brdf.haar --beside other.haar --frames 1
 saved around brdf.haar --frames 1 --probe studio.hdr --light-level 5
 expect 0 haarview brdf.haar --size 120x90 --image frame.png
 expect 0 haarview brdf.haar --size 120x90 --probe studio.hdr --light-level 5 --image frame_around.png

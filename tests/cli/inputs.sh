@@ -67,7 +67,7 @@ twice haarbench --brdf - - --probe studio.hdr -o bench
 [ ! -e bench ] || fail "haarbench left its folder"
 if [ -x "$bin/haarview" ]; then
   twice haarview - --probe - --image view.png
-  twice haarview - --against - --frames 1
+  twice haarview - --beside - --frames 1
   twice haarview - --compare --reference - --image view.png
 fi
 

@@ -3,7 +3,7 @@
 #include "haar_mutator.h"
 #include "walk_trees.h"
 
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 using namespace haarlight;
 

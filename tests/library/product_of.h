@@ -12,9 +12,7 @@ namespace haarlight::wavelet {
 /// @param light its arrays must outlive the result
 inline ProductTree product_of(const TreeView& light, const TreeView& reflectance,
                               const SquareSymmetry& symmetry = {}) {
-  const TreeFactor first(light);
-  const TreeFactor second(reflectance, symmetry);
-  const Factor* const factors[] = {&first, &second};
+  const TreeFactor factors[] = {TreeFactor(light), TreeFactor(reflectance, symmetry)};
   SynchronousProduct product;
   return product.build(factors);
 }

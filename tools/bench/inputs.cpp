@@ -10,7 +10,6 @@
 #include <probe/read_probe.h>
 #include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
-#include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>
 #include <wavelet/transform/compress.h>
 

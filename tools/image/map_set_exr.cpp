@@ -4,7 +4,7 @@
 #include <image/exr_io.h>
 
 #include <wavelet/base/error.h>
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/base/parallel.h>
 
 #include <OpenEXR/ImfChannelList.h>
@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <cstring>
 #include <mutex>
+#include <span>
 #include <vector>
 
 namespace haarlight::image {
@@ -45,7 +46,7 @@ using wavelet::SetKind;
 /// The sphere map of every set, as stated by the attribute haarlight:domain.
 constexpr const char* domain_name = "octahedral equal-area (Clarberg 2008)";
 
-constexpr std::array<const char*, 3> kind_names = {"generic", "brdf", "light"};
+constexpr std::array<const char*, 4> kind_names = {"generic", "brdf", "light", "transfer"};
 constexpr std::array<const char*, 3> fold_names = {"none", "rotations", "mirrors"};
 constexpr int largest_size = 1 << 13; // as .haar files have it
 constexpr int most_columns = 1 << 16;
@@ -74,13 +75,15 @@ public:
     return value;
   }
   template <class E>
-  E choice(const std::string& name, const std::array<const char*, 3>& words) const {
+  E choice(const std::string& name, std::span<const char* const> words) const {
     const std::string& word = text(name);
     for (std::uint32_t i = 0; i < words.size(); ++i)
       if (word == words[i])
         return static_cast<E>(i);
-    fail("haarlight:" + name + " is '" + word + "', " + words[0] + ", " + words[1] + " or " +
-         words[2] + " is needed");
+    std::string choices = words.front();
+    for (std::size_t i = 1; i < words.size(); ++i)
+      choices.append(i + 1 < words.size() ? ", " : " or ").append(words[i]);
+    fail("haarlight:" + name + " is '" + word + "', " + choices + " is needed");
   }
   [[noreturn]] void fail(const std::string& message) const { throw_input_error(m_path, message); }
 

@@ -8,7 +8,6 @@
 
 #include <renderer/scene/scene.h>
 #include <wavelet/base/error.h>
-#include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>
 
 namespace haarlight::tool {

@@ -6,7 +6,6 @@
 #include <image/image_exr.h>
 #include <image/png.h>
 
-#include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>
 
 #include <algorithm>
@@ -37,7 +36,8 @@ std::vector<std::string> sources_of(const SceneDescription& scene) {
 /// The options of all samplers.
 void set_sampling(const SamplerOptions& sampling, Provenance& result) {
   result.set("product variance", short_text(static_cast<double>(sampling.product.variance_bound)));
-  result.set("product drift", short_text(static_cast<double>(sampling.product.drift_bound)));
+  result.set("product drift",
+             short_text(static_cast<double>(sampling.product.reuse_variance_bound)));
   result.set("product leaves", std::to_string(sampling.product.max_leaves));
   result.set("candidates", std::to_string(sampling.candidates));
   result.set("regions", std::to_string(sampling.regions));

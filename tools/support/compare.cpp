@@ -10,7 +10,7 @@
 
 #include <wavelet/base/error.h>
 #include <wavelet/file/input_file.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <algorithm>
 #include <array>
@@ -57,6 +57,8 @@ std::string values_of(const SetInfo& info) {
     return info.cosine ? "f_r cos" : "f_r without the cosine";
   case SetKind::Light:
     return info.world_frame ? "radiance in the world's frame" : "radiance in mirror frames";
+  case SetKind::Transfer:
+    return "a transfer";
   case SetKind::Generic:
     break;
   }

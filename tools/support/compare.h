@@ -3,8 +3,8 @@
 
 #include <image/contact_sheet.h>
 
+#include <wavelet/tree/compare.h>
 #include <wavelet/tree/map_set.h>
-#include <wavelet/tree/map_views.h>
 
 #include <string>
 #include <vector>

@@ -134,6 +134,8 @@ const char* kind_name(wavelet::SetKind kind) {
     return "brdf";
   case wavelet::SetKind::Light:
     return "light";
+  case wavelet::SetKind::Transfer:
+    return "transfer";
   case wavelet::SetKind::Generic:
     break;
   }

@@ -5,7 +5,6 @@
 
 #include <wavelet/base/image.h>
 
-#include <wavelet/file/packed_set.h>
 #include <wavelet/file/tree_set.h>
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include <support/output_size.h>
 
-#include <wavelet/base/available_memory.h>
 #include <wavelet/base/error.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/base/parallel.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include <support/tool.h>
 
 #include <wavelet/base/error.h>
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/base/parallel.h>
 #include <wavelet/file/temporary_name.h>
 

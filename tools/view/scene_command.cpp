@@ -8,7 +8,6 @@
 #include <image/png.h>
 
 #include <renderer/light/light.h>
-#include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>
 #include <wavelet/file/provenance.h>
 #include <wavelet/file/tree_set.h>

@@ -3,7 +3,7 @@
 // them.
 //
 // Of each pixel a list of squares with their coefficients, breadth first, and the light's
-// coefficients by square. Squares are numbered as in <wavelet/transform/dense_coefficients.h>, so
+// coefficients by square. Squares are numbered as in <wavelet/product/multiply.h>, so
 // that those of a coarser level come first. The first three numbers of a texel are the differences
 // d1, d2, d3 of a square: R, G, B as signed ten-bit integers, red in the lowest bits, in a unit of
 // that texel. The fourth number holds, for transfer, square << 8 | e with the unit 2^(e - 127); for
@@ -12,7 +12,7 @@
 #include <view/packing.h>
 
 #include <renderer/transfer/relight.h>
-#include <wavelet/transform/dense_coefficients.h>
+#include <wavelet/product/multiply.h>
 
 #include <span>
 #include <vector>

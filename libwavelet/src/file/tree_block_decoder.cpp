@@ -1,7 +1,6 @@
-#include "file/coefficient_code.h"
-#include "file/packed_layout.h"
 #include "file/tree_block.h"
 #include "file/zstd_frame.h"
+#include "tree/tree_writer.h"
 
 #include <wavelet/file/input_file.h>
 
@@ -120,37 +119,36 @@ private:
     tree.type = m_type;
     tree.scale = record.scale;
     tree.mean = {record.mean[0], record.mean[1], record.mean[2]};
-    tree.level_begin.assign(1, 0);
-    tree.links.resize(record.node_count);
+    tree.links.reserve(record.node_count);
     tree.coefficients.resize(3 * m_set.channels * m_width * record.node_count + 8);
   }
 
   /// Links from child masks, which lie level by level and within a level tree by tree.
   void read_structure() {
+    std::vector<LinkWriter> links(m_trees.begin(), m_trees.end());
     std::size_t next = 0;
-    std::vector<std::uint32_t> ends(m_trees.size());
-    for (std::size_t i = 0; i < m_trees.size(); ++i)
-      ends[i] = std::min<std::uint32_t>(1, static_cast<std::uint32_t>(m_trees[i].links.size()));
     for (std::uint32_t level = 0; level < m_set.levels; ++level)
       for (std::size_t i = 0; i < m_trees.size(); ++i)
-        next = read_level(m_trees[i], ends[i], next, level + 1 == m_set.levels);
-    for (std::size_t i = 0; i < m_trees.size(); ++i)
-      require(m_trees[i].level_begin.back() == m_trees[i].links.size(),
+        next = read_level(i, links[i], next, level + 1 == m_set.levels);
+    for (std::size_t i = 0; i < m_trees.size(); ++i) {
+      require(m_trees[i].links.size() == m_records[i].node_count,
               "child masks do not add up to the number of nodes");
+      links[i].finish();
+    }
   }
 
-  /// @param end in: of this level's nodes; out: of the next level's
-  std::size_t read_level(Tree& tree, std::uint32_t& end, std::size_t next, bool last) {
-    const std::uint32_t level_end = end;
-    for (std::uint32_t node = tree.level_begin.back(); node < level_end; ++node, ++next) {
+  /// @param next place in the structure. @return the place after the level
+  std::size_t read_level(std::size_t index, LinkWriter& links, std::size_t next, bool last) {
+    const std::uint32_t node_count = m_records[index].node_count;
+    const std::uint32_t end = std::min(links.level_end(), node_count);
+    for (std::size_t node = m_trees[index].links.size(); node < end; ++node, ++next) {
       const auto byte = std::to_integer<std::uint32_t>(m_structure[next]);
       require(!last || (byte & 15U) == 0, "node of the last level has children");
-      tree.links[node] = end << 4U | (byte & 15U);
-      end += detail::bits_of_nibble(byte & 15U);
+      links.add(byte & 15U);
+      require(links.named_nodes() <= node_count,
+              "child masks do not add up to the number of nodes");
       m_present += detail::bits_of_nibble(byte >> 4U);
     }
-    require(end <= tree.links.size(), "child masks do not add up to the number of nodes");
-    tree.level_begin.push_back(level_end);
     return next;
   }
 

@@ -1,5 +1,3 @@
-#include "file/coefficient_code.h"
-#include "file/packed_layout.h"
 #include "file/tree_block.h"
 #include "file/zstd_frame.h"
 

@@ -1,4 +1,4 @@
-#include <wavelet/product/masked_product.h>
+#include <wavelet/product/adaptive_product.h>
 
 namespace haarlight::wavelet {
 namespace {
@@ -10,7 +10,7 @@ bool is_black(Float4 c) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
 std::span<const MaskedLeaf> MaskedProduct::build(const ProductTree& product,
                                                  std::span<const TreeView> masks) {
   m_product = &product;
-  m_light = &product.rest(0);
+  m_light = &product.remaining_tree(0);
   m_masks.clear();
   m_splits.clear();
   m_leaves.clear();
@@ -27,26 +27,25 @@ std::span<const MaskedLeaf> MaskedProduct::build(const ProductTree& product,
   return m_leaves;
 }
 
-/// Puts the quadrants of the masks on m_splits.
+/// Pushes the quadrants of the masks on m_splits.
 void MaskedProduct::split_masks(Masks masks) {
   for (std::size_t i = masks.first; i < m_masks.size(); ++i) {
     const Mask& mask = m_masks[i];
-    const auto means = mask.tree->details(mask.node).children(Float4{} + mask.mean);
-    m_splits.push_back({mask.tree, mask.tree->children(mask.node),
-                        Float4{means[0][0], means[1][0], means[2][0], means[3][0]}});
+    m_splits.push_back({mask.tree, mask.tree->split(mask.node, Float4{} + mask.mean)});
   }
 }
 
-/// Puts the masks of a quadrant on m_masks.
+/// Pushes the masks of a quadrant on m_masks.
 /// @param splits first of the split masks
-MaskedProduct::Masks MaskedProduct::quadrant(unsigned q, std::size_t splits, float scale) {
+MaskedProduct::Masks MaskedProduct::masks_of_quadrant(unsigned q, std::size_t splits, float scale) {
   Masks result = {m_masks.size(), scale};
   for (std::size_t i = splits; i < m_splits.size(); ++i) {
-    const MaskQuadrants& mask = m_splits[i];
-    if (mask.nodes[q] == no_node)
-      result.scale *= mask.means[q];
+    const auto& [tree, quadrants] = m_splits[i];
+    const float mean = quadrants.means[q][0];
+    if (quadrants.nodes[q] == no_node)
+      result.scale *= mean;
     else
-      m_masks.push_back({mask.tree, mask.nodes[q], mask.means[q]});
+      m_masks.push_back({tree, quadrants.nodes[q], mean});
   }
   return result;
 }
@@ -57,9 +56,7 @@ void MaskedProduct::visit(std::int32_t child, Masks masks) {
     if (is_black(at.reflectance))
       return;
     MaskedLeaf leaf;
-    leaf.x = at.x;
-    leaf.y = at.y;
-    leaf.level = at.level;
+    leaf.square = at.square;
     leaf.m_light = at.light;
     leaf.m_node = at.node;
     return add_leaf(leaf, masks, m_leaves);
@@ -69,7 +66,7 @@ void MaskedProduct::visit(std::int32_t child, Masks masks) {
   const std::size_t end = m_masks.size();
   split_masks(masks);
   for (unsigned q = 0; q < 4; ++q) {
-    const Masks below = quadrant(q, splits, masks.scale);
+    const Masks below = masks_of_quadrant(q, splits, masks.scale);
     if (below.scale != 0)
       visit(node.child[q], below);
     m_masks.resize(end);
@@ -77,10 +74,10 @@ void MaskedProduct::visit(std::int32_t child, Masks masks) {
   m_splits.resize(splits);
 }
 
-/// Unless nothing is left of it.
+/// Appends a leaf unless its masks leave no light.
 void MaskedProduct::add_leaf(MaskedLeaf leaf, Masks masks, std::vector<MaskedLeaf>& out) {
-  leaf.left = light_below(leaf.m_light, leaf.m_node, masks);
-  if (is_black(leaf.left))
+  leaf.visible_light = average_below(leaf.m_light, leaf.m_node, masks);
+  if (is_black(leaf.visible_light))
     return;
   leaf.m_scale = masks.scale;
   leaf.m_first_mask = static_cast<std::uint32_t>(m_leaf_masks.size());
@@ -96,48 +93,35 @@ void MaskedProduct::split(MaskedLeaf leaf, std::vector<MaskedLeaf>& out) {
   for (std::uint32_t i = 0; i < leaf.m_mask_count; ++i)
     m_masks.push_back(m_leaf_masks[leaf.m_first_mask + i]);
   split_masks({});
-  std::array<Float4, 4> means;
-  means.fill(leaf.m_light);
-  std::array<std::uint32_t, 4> nodes = {no_node, no_node, no_node, no_node};
-  if (leaf.m_node != no_node) {
-    means = m_light->details(leaf.m_node).children(leaf.m_light);
-    nodes = m_light->children(leaf.m_node);
-  }
+  const TreeQuadrants light = m_light->split(leaf.m_node, leaf.m_light);
   for (unsigned q = 0; q < 4; ++q) {
     m_masks.clear();
     MaskedLeaf child;
-    child.x = static_cast<std::uint16_t>(2 * leaf.x + (q & 1U));
-    child.y = static_cast<std::uint16_t>(2 * leaf.y + (q >> 1U));
-    child.level = static_cast<std::uint8_t>(leaf.level + 1);
-    child.m_light = means[q];
-    child.m_node = nodes[q];
-    const Masks below = quadrant(q, 0, leaf.m_scale);
+    child.square = leaf.square.quadrant(q);
+    child.m_light = light.means[q];
+    child.m_node = light.nodes[q];
+    const Masks below = masks_of_quadrant(q, 0, leaf.m_scale);
     if (below.scale != 0)
       add_leaf(child, below, out);
   }
 }
 
 /// The average of light times masks over a square.
-Float4 MaskedProduct::light_below(Float4 mean, std::uint32_t node, Masks masks) {
+Float4 MaskedProduct::average_below(Float4 mean, std::uint32_t node, Masks masks) {
   const std::size_t end = m_masks.size();
   const std::size_t count = end - masks.first;
   if (count == 0)
     return mean * masks.scale;
   if (count == 1 && node == no_node)
     return mean * (masks.scale * m_masks.back().mean);
-  std::array<Float4, 4> means = {mean, mean, mean, mean};
-  std::array<std::uint32_t, 4> nodes = {no_node, no_node, no_node, no_node};
-  if (node != no_node) {
-    means = m_light->details(node).children(mean);
-    nodes = m_light->children(node);
-  }
+  const TreeQuadrants light = m_light->split(node, mean);
   const std::size_t splits = m_splits.size();
   split_masks(masks);
   Float4 sum = {};
   for (unsigned q = 0; q < 4; ++q) {
-    const Masks below = quadrant(q, splits, masks.scale);
+    const Masks below = masks_of_quadrant(q, splits, masks.scale);
     if (below.scale != 0)
-      sum += light_below(means[q], nodes[q], below);
+      sum += average_below(light.means[q], light.nodes[q], below);
     m_masks.resize(end);
   }
   m_splits.resize(splits);

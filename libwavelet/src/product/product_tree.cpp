@@ -13,25 +13,25 @@ Rgb ProductTree::integral() const {
     for (const std::int32_t child : node.child)
       if (child < 0) {
         const ProductLeaf& leaf = m_leaves[static_cast<std::uint32_t>(~child)];
-        sum += leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
+        sum += leaf.light * leaf.reflectance * leaf.square.area();
       }
   return to_rgb(sum);
 }
 
-/// The last factor that has detail is what is left.
+/// The remaining factor is the last one that has detail.
 ProductLeaf ProductTree::leaf_at_slot(std::int32_t slot) const {
   const auto i = static_cast<std::size_t>(slot);
-  std::size_t rest = m_slots.size() - 1;
-  while (rest > 0 && m_slots[rest].details[i] == no_node)
-    --rest;
+  std::size_t remaining = m_slots.size() - 1;
+  while (remaining > 0 && m_slots[remaining].nodes[i] == no_node)
+    --remaining;
   ProductLeaf leaf;
   leaf.reflectance = Float4{1, 1, 1, 0};
   for (std::size_t f = 0; f < m_slots.size(); ++f)
-    if (f != rest)
+    if (f != remaining)
       leaf.reflectance *= m_slots[f].means[i];
-  leaf.light = m_slots[rest].means[i];
-  leaf.node = m_slots[rest].details[i];
-  leaf.rest = static_cast<std::uint8_t>(rest);
+  leaf.light = m_slots[remaining].means[i];
+  leaf.node = m_slots[remaining].nodes[i];
+  leaf.remaining = static_cast<std::uint8_t>(remaining);
   return leaf;
 }
 
@@ -43,7 +43,7 @@ void ProductTree::sum_upwards(const std::vector<std::int32_t>& parent_slots) {
   }
 }
 
-/// Leads a descent to a leaf. @return the child that names it
+/// Descends to a leaf. @return the node entry that names the leaf, ~slot
 std::int32_t ProductTree::descend_nodes(Descent& d) const {
   std::int32_t next = 0;
   while (next >= 0) {

@@ -80,7 +80,7 @@ SquareValues transposed(const SquareValues& v) {
 
 } // namespace
 
-SquareCap square_cap(const SquarePlace& square) {
+SquareCap square_cap(const Square& square) {
   SquareCap cap;
   const float side = power_of_two(-square.level);
   cap.centre = square_to_sphere(Vec2((static_cast<float>(square.column) + 0.5F) * side,
@@ -104,7 +104,7 @@ SquareCap square_cap(const SquarePlace& square) {
   return cap;
 }
 
-SquareDirections square_directions(const SquarePlace& square) {
+SquareDirections square_directions(const Square& square) {
   const float side = power_of_two(-square.level);
   const float u = static_cast<float>(square.column) * side;
   const float v = static_cast<float>(square.row) * side;
@@ -128,7 +128,7 @@ bool nearly_linear(const SquareValues& v) {
   return *low > bend || *high < -bend; // one sign all over, whatever its shape
 }
 
-float positive_share(const SquareValues& given) {
+float positive_fraction(const SquareValues& given) {
   const bool along_rows = std::abs(given[5] - given[3]) >= std::abs(given[7] - given[1]);
   const SquareValues v = along_rows ? given : transposed(given);
   std::array<Quadratic, 3> columns;

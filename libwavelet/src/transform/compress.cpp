@@ -1,17 +1,17 @@
 #include <wavelet/transform/compress.h>
 
-#include "transform/coefficient_walk.h"
 #include "tree/map_batches.h"
-#include "tree/tree_builder.h"
+#include "tree/tree_writer.h"
 
-#include <wavelet/file/packed_set.h>
 #include <wavelet/file/tree_set.h>
-#include <wavelet/transform/quantize.h>
+#include <wavelet/transform/threshold.h>
 #include <wavelet/transform/transform.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace haarlight::wavelet {
 namespace {
@@ -58,6 +58,100 @@ Map grey(Map map) {
   }
   return map;
 }
+
+/// Builds the tree of a transformed, thresholded map.
+class TreeBuilder {
+public:
+  TreeBuilder(const Map& map, int channels, CoefficientType type) : m_map(map) {
+    m_tree.levels = std::countr_zero(static_cast<unsigned>(map.size));
+    m_tree.channels = channels;
+    m_tree.type = type;
+    const Rgb mean = map.at(0, 0);
+    m_tree.mean = channels == 3 ? mean : Rgb::Constant(luminance(mean));
+  }
+
+  /// @param scale of the coefficients, if they fit it; 0 = a power of two that fits them
+  Tree build(float scale) {
+    choose_scale(scale);
+    mark_squares();
+    TreeWriter writer(m_tree);
+    std::vector<Square> squares; // breadth first
+    if (m_tree.levels > 0 && is_present({}))
+      squares.emplace_back();
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      const Square s = squares[i];
+      const unsigned mask = child_mask(s);
+      writer.add(mask, details(s));
+      for (unsigned q = 0; q < 4; ++q)
+        if ((mask >> q & 1U) != 0)
+          squares.push_back(s.quadrant(q));
+    }
+    writer.finish();
+    return std::move(m_tree);
+  }
+
+private:
+  Float4 coefficient(const Square& s, int m) const {
+    const float* c = m_map.rgb.data() + 3 * coefficient_index(m_map.size, s, m);
+    return Float4{c[0], c[1], c[2], 0};
+  }
+
+  Details details(const Square& s) const {
+    return {coefficient(s, 1), coefficient(s, 2), coefficient(s, 3)};
+  }
+
+  bool has_detail(const Square& s) const {
+    for (int m = 1; m <= 3; ++m) {
+      const Float4 c = coefficient(s, m);
+      if (is_stored(c[0]) || is_stored(c[1]) || is_stored(c[2]))
+        return true;
+    }
+    return false;
+  }
+
+  /// False for differences that become zeros in halves.
+  bool is_stored(float difference) const {
+    return difference != 0 && (m_tree.type == CoefficientType::Float ||
+                               std::abs(difference) / m_tree.scale > smallest_stored_half);
+  }
+
+  /// Marks the squares that have a wavelet in or under them, finest level first.
+  void mark_squares() {
+    m_present.resize(static_cast<std::size_t>(m_tree.levels));
+    for (std::int32_t l = m_tree.levels - 1; l >= 0; --l) {
+      const std::uint32_t side = 1U << l;
+      auto& marks = m_present[static_cast<std::size_t>(l)];
+      marks.reserve(static_cast<std::size_t>(side) * side);
+      for (Square s = {l, 0, 0}; s.row < side; ++s.row)
+        for (s.column = 0; s.column < side; ++s.column)
+          marks.push_back(has_detail(s) || child_mask(s) != 0 ? 1 : 0);
+    }
+  }
+
+  bool is_present(const Square& s) const {
+    const std::size_t place = (static_cast<std::size_t>(s.row) << s.level) + s.column;
+    return m_present[static_cast<std::size_t>(s.level)][place] != 0;
+  }
+
+  unsigned child_mask(const Square& s) const {
+    unsigned mask = 0;
+    for (unsigned q = 0; q < 4 && s.level + 1 < m_tree.levels; ++q)
+      mask |= is_present(s.quadrant(q)) ? 1U << q : 0U;
+    return mask;
+  }
+
+  void choose_scale(float scale) {
+    float largest = 0;
+    for (std::size_t i = 3; i < m_map.rgb.size(); ++i)
+      largest = std::max(largest, std::abs(m_map.rgb[i]));
+    const bool fits = scale > 0 && largest / scale <= largest_stored_half;
+    m_tree.scale = fits ? scale : coefficient_scale(m_tree.type, largest);
+  }
+
+  const Map& m_map;
+  Tree m_tree;
+  std::vector<std::vector<std::uint8_t>> m_present; ///< by level, row and column
+};
 
 /// The maps of one batch, compressed in parallel and stored in order.
 struct Slot {
@@ -106,7 +200,7 @@ Tree compress_map(const Map& map, const CompressOptions& options, CompressReport
   else
     quantized.coefficients = apply_threshold(transformed, options.threshold).coefficients;
   report.kept_coefficients = quantized.coefficients;
-  Tree tree = build_tree(transformed, channels, options.coefficients, quantized.scale);
+  Tree tree = TreeBuilder(transformed, channels, options.coefficients).build(quantized.scale);
   report.nodes = tree.links.size();
   measure_pixels(map, tree.view().reconstruct(tree.levels), channels, report);
   return tree;

@@ -1,7 +1,7 @@
 #pragma once
 // The maps of a set, a few at a time.
 
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/base/parallel.h>
 #include <wavelet/tree/map_set.h>
 

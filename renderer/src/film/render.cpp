@@ -56,7 +56,7 @@ SamplerOptions sampling_of(const RenderOptions& options) {
   result.count = static_cast<std::size_t>(options.spp);
   if (!needs_unshadowed(options.estimator))
     return result;
-  result.product.drift_bound = 0; // each point needs its own product
+  result.product.reuse_variance_bound = 0; // each point needs its own product
   if (result.product.variance_bound == 0)
     result.product.variance_bound = integral_variance_bound;
   return result;

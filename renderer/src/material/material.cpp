@@ -348,9 +348,9 @@ wavelet::RotatedReflectance Material::reflectance(const ShadingPoint& point) con
   const float c = theta_coordinate(*m_lobes, point);
   wavelet::RotatedReflectance result;
   result.pyramid = &*m_pyramid;
-  result.entry0 = static_cast<int>(c);
-  result.entry1 = std::min(result.entry0 + 1, m_lobes->info().columns - 1);
-  result.blend = c - static_cast<float>(result.entry0);
+  result.theta_index0 = static_cast<int>(c);
+  result.theta_index1 = std::min(result.theta_index0 + 1, m_lobes->info().columns - 1);
+  result.blend = c - static_cast<float>(result.theta_index0);
   result.reflection = point.reflection;
   return result;
 }

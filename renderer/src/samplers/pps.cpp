@@ -176,10 +176,7 @@ private:
     link(square, node);
     m_nodes.emplace_back();
     m_parent_slots.push_back(square.slot);
-    std::array<Float4, 4> light;
-    light.fill(square.light);
-    if (square.node != wavelet::no_node)
-      light = m_light.details(square.node).children(square.light);
+    const wavelet::TreeQuadrants light = m_light.split(square.node, square.light);
     SplatSquare quadrant = square;
     ++quadrant.level;
     for (unsigned q = 0; q < 4; ++q) {
@@ -188,8 +185,8 @@ private:
       quadrant.y = 2 * square.y + (q >> 1U);
       quadrant.begin = q == 0 ? square.begin : quadrant.end;
       quadrant.end = end_of_quadrant(quadrant.begin, square.end, quadrant.level, q);
-      quadrant.light = light[q];
-      quadrant.node = m_light.child(square.node, q);
+      quadrant.light = light.means[q];
+      quadrant.node = light.nodes[q];
       m_pending.push_back(quadrant);
     }
   }

@@ -56,23 +56,35 @@ private:
   std::vector<wavelet::Descent> m_descents;
 };
 
-/// Rays towards the light from one hit.
-class HitOcclusion final : public wavelet::Occlusion {
+/// Visibility of squares from one hit, by rays: through the centre of a square and, if that is
+/// occluded, through the centres of its quadrants, whose visible fraction counts.
+class RayVisibility final : public wavelet::SquareVisibility {
 public:
-  HitOcclusion(const ShapeSet& shapes, const Light& light) : m_shapes(shapes), m_light(light) {}
+  RayVisibility(const ShapeSet& shapes, const Light& light) : m_shapes(shapes), m_light(light) {}
 
   /// @param hit must live until the next call; its normal points to the viewer's side
   void set_shading_point(const Hit& hit) { m_hit = &hit; }
 
-  /// Directions below the surface count as unoccluded: no light is reflected from there.
-  void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override {
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-      const Vec3 w = m_light.to_world(directions[i]);
-      hidden[i] = m_hit->normal.dot(w) > 0 && m_shapes.occluded(leave(*m_hit, w)) ? 1 : 0;
+  void query_visibility(std::span<const wavelet::Square> squares,
+                        std::span<wavelet::SquareView> views) override {
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      views[i].seen = 1;
+      if (is_visible(squares[i]))
+        continue;
+      views[i].seen = 0;
+      for (unsigned q = 0; q < 4; ++q)
+        views[i].seen += is_visible(squares[i].quadrant(q)) ? 0.25F : 0.0F;
     }
   }
 
 private:
+  /// Of a square's centre. Directions below the surface count as visible: no light is reflected
+  /// from there.
+  bool is_visible(const wavelet::Square& square) const {
+    const Vec3 w = m_light.to_world(wavelet::square_to_sphere(square.centre()));
+    return m_hit->normal.dot(w) <= 0 || !m_shapes.occluded(leave(*m_hit, w));
+  }
+
   const ShapeSet& m_shapes;
   const Light& m_light;
   const Hit* m_hit = nullptr;
@@ -110,7 +122,7 @@ public:
                  const wavelet::AdaptiveOptions& open, const wavelet::AdaptiveOptions& shadowed)
       : m_configuration(configuration), m_open(open), m_shadowed(shadowed),
         m_builder(scene.light().tree()), m_light(scene.light()),
-        m_occlusion(scene.shapes(), scene.light()), m_visibility(scene.shapes(), scene.light()) {}
+        m_rays(scene.shapes(), scene.light()), m_visibility(scene.shapes(), scene.light()) {}
 
   void reset() override { m_has_previous = false; }
 
@@ -119,14 +131,15 @@ public:
     const bool shadowed = point.hit != nullptr;
     if (shadowed && m_configuration.conservative_visibility) {
       m_visibility.set_shading_point(*point.hit);
-      m_product = &m_builder.build(reflectance, m_shadowed, m_visibility);
+      m_product = &m_builder.build(reflectance, m_shadowed, &m_visibility,
+                                   wavelet::VisibilityTest::Squares);
     } else {
       if (shadowed)
-        m_occlusion.set_shading_point(*point.hit);
+        m_rays.set_shading_point(*point.hit);
       const wavelet::AdaptiveOptions& options = shadowed ? m_shadowed : m_open;
-      const wavelet::Occlusion* occlusion = shadowed ? &m_occlusion : nullptr;
-      m_product = m_has_previous ? &m_builder.follow(reflectance, options, occlusion)
-                                 : &m_builder.build(reflectance, options, occlusion);
+      wavelet::SquareVisibility* visibility = shadowed ? &m_rays : nullptr;
+      m_product = m_has_previous ? &m_builder.build_or_reuse(reflectance, options, visibility)
+                                 : &m_builder.build(reflectance, options, visibility);
     }
     m_has_previous = true;
     m_mixes = shadowed && !m_product->empty();
@@ -182,7 +195,7 @@ private:
   wavelet::AdaptiveOptions m_shadowed;
   wavelet::AdaptiveProduct m_builder;
   LightSampler m_light;
-  HitOcclusion m_occlusion;
+  RayVisibility m_rays;
   detail::ConservativeVisibility m_visibility;
   bool m_has_previous = false;
   bool m_mixes = false;
@@ -248,9 +261,9 @@ private:
     if (entry.material == &material && entry.cells == cells)
       return entry.product;
     const RollEntry roll = roll_entry(*material.roll_table(), cells);
-    const wavelet::TreeFactor light(m_table.tree(cells.light_column, cells.light_row));
-    const wavelet::TreeFactor lobe(roll.tree, roll.symmetry);
-    const wavelet::Factor* const factors[] = {&light, &lobe};
+    const wavelet::TreeFactor factors[] = {
+        wavelet::TreeFactor(m_table.tree(cells.light_column, cells.light_row)),
+        wavelet::TreeFactor(roll.tree, roll.symmetry)};
     entry = {&material, cells, m_builder.build(factors)};
     return entry.product;
   }

@@ -16,7 +16,7 @@ namespace haarlight::renderer {
 namespace {
 
 namespace reference = wavelet::reference;
-using reference::Square;
+using wavelet::Square;
 using Coefficients = reference::CoefficientSet<float>;
 using Differences = Coefficients::Details;
 
@@ -36,8 +36,7 @@ void insert_nodes(const RollEntry& entry, std::uint32_t node, const Square& s, C
     means[q] = wavelet::lane_sum(stored[entry.symmetry.to_stored(q)] * wavelet::luminance_lanes);
   out.details.emplace(s, differences(means, s.level));
   for (unsigned q = 0; q < 4; ++q)
-    insert_nodes(entry, entry.tree.child(node, entry.symmetry.to_stored(q)),
-                 reference::child(s, static_cast<int>(q & 1U), static_cast<int>(q >> 1U)), out);
+    insert_nodes(entry, entry.tree.child(node, entry.symmetry.to_stored(q)), s.quadrant(q), out);
 }
 
 /// A table's entry as coefficients of luminance.
@@ -74,13 +73,13 @@ private:
   std::size_t node_of(const Square& s) {
     if (const auto found = m_places.find(s); found != m_places.end())
       return found->second;
-    const std::size_t above = s.level > 0 ? node_of(reference::parent(s)) : 0;
+    const std::size_t above = s.level > 0 ? node_of(s.parent()) : 0;
     const std::size_t place = m_nodes.size();
     m_nodes.emplace_back();
     m_squares.push_back(s);
     m_places.emplace(s, place);
     if (s.level > 0)
-      m_nodes[above].child[(s.x & 1) + 2 * (s.y & 1)] = static_cast<std::int32_t>(place);
+      m_nodes[above].child[s.index_in_parent()] = static_cast<std::int32_t>(place);
     return place;
   }
 

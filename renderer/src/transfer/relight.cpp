@@ -4,8 +4,8 @@
 
 #include <wavelet/base/parallel.h>
 #include <wavelet/product/adaptive_product.h>
+#include <wavelet/product/multiply.h>
 #include <wavelet/square/sphere_map.h>
-#include <wavelet/transform/dense_coefficients.h>
 
 #include <algorithm>
 #include <deque>

@@ -21,14 +21,14 @@ namespace {
 
 using namespace detail;
 using wavelet::RegionPart;
-using wavelet::SquarePlace;
+using wavelet::Square;
 
 /// Integrates trees over caps: squares inside count with their averages, and only squares that the
 /// cap's edge crosses are descended into. Shared by threads.
 class SphereOcclusion {
 public:
   SphereOcclusion() {
-    std::vector<SquarePlace> places = {SquarePlace{}};
+    std::vector<Square> places = {Square{}};
     for (std::size_t i = 0; i < places.size(); ++i) {
       m_bounds.push_back(wavelet::square_cap(places[i]));
       if (places[i].level < finest_level)
@@ -60,7 +60,7 @@ private:
     const Cap& cap;
     float negligible; ///< luminance times area
   };
-  struct Square {
+  struct Place {
     std::uint32_t index; ///< in a complete tree: quadrant q of i is 4 i + 1 + q
     int level;
   };
@@ -73,7 +73,7 @@ private:
     return std::clamp(0.5F + 0.5F * inside / (half_width * bounds.sine), 0.0F, 1.0F);
   }
 
-  Float4 integral(const Walk& walk, std::uint32_t node, Float4 mean, const Square& square) const {
+  Float4 integral(const Walk& walk, std::uint32_t node, Float4 mean, const Place& square) const {
     const wavelet::SquareCap& bounds = m_bounds[square.index];
     const float weight = wavelet::lane_sum(mean * wavelet::luminance_lanes);
     const RegionPart part = walk.cap.classify(bounds);
@@ -87,15 +87,11 @@ private:
     if (square.level == finest_level ||
         weight * power_of_two(-2 * square.level) <= walk.negligible || (constant && straight))
       return mean * fraction_inside(bounds, walk.cap);
-    std::array<Float4, 4> means = {mean, mean, mean, mean};
-    std::array<std::uint32_t, 4> children = {node, node, node, node};
-    if (!constant) {
-      means = walk.tree.details(node).children(mean);
-      children = walk.tree.children(node);
-    }
+    const wavelet::TreeQuadrants quadrants = walk.tree.split(node, mean);
     Float4 sum = {};
     for (unsigned q = 0; q < 4; ++q)
-      sum += integral(walk, children[q], means[q], {4 * square.index + 1 + q, square.level + 1});
+      sum += integral(walk, quadrants.nodes[q], quadrants.means[q],
+                      {4 * square.index + 1 + q, square.level + 1});
     return 0.25F * sum;
   }
 
@@ -150,7 +146,7 @@ class ObjectShader {
 public:
   ObjectShader(const LoadedScene& scene, int object)
       : m_scene(scene), m_object(object), m_product(scene.light().tree()) {
-    m_options.drift_bound = 0; // each point needs its own integral
+    m_options.reuse_variance_bound = 0; // each point needs its own integral
     for (int i = 0; i < static_cast<int>(scene.description().objects.size()); ++i) {
       const ObjectDescription& other = scene.description().objects[static_cast<std::size_t>(i)];
       if (i != object)
@@ -163,8 +159,9 @@ public:
     const ShadingPoint point = shading_point(light.to_light(hit.normal), light.to_light(wo));
     const wavelet::RotatedReflectance reflectance =
         m_scene.material_of(m_object).reflectance(point);
-    const wavelet::ProductTree& product = m_has_previous ? m_product.follow(reflectance, m_options)
-                                                         : m_product.build(reflectance, m_options);
+    const wavelet::ProductTree& product = m_has_previous
+                                              ? m_product.build_or_reuse(reflectance, m_options)
+                                              : m_product.build(reflectance, m_options);
     m_has_previous = true;
     Float4 sum = {};
     for (const wavelet::ProductNode& node : product.nodes())
@@ -176,12 +173,10 @@ public:
 
 private:
   Float4 visible_part(const Hit& hit, const wavelet::ProductLeaf& leaf) const {
-    const Float4 value = leaf.light * leaf.reflectance * power_of_two(-2 * leaf.level);
+    const Float4 value = leaf.light * leaf.reflectance * leaf.square.area();
     if (!(wavelet::lane_sum(value * wavelet::luminance_lanes) > 0))
       return Float4{};
-    const float side = power_of_two(-leaf.level);
-    const Vec3 w = m_scene.light().to_world(wavelet::square_to_sphere(Vec2(
-        (static_cast<float>(leaf.x) + 0.5F) * side, (static_cast<float>(leaf.y) + 0.5F) * side)));
+    const Vec3 w = m_scene.light().to_world(wavelet::square_to_sphere(leaf.square.centre()));
     return m_others.occluded(leave(hit, w)) ? Float4{} : value;
   }
 

@@ -114,7 +114,7 @@ TransferBuilder::TransferBuilder(const LoadedScene& scene, const VisibilityTrees
                                  const std::vector<float>& light_variances)
     : m_scene(scene), m_variation(variation),
       m_options(options), m_light{scene.light().tree(), light_variances.data()},
-      m_projection(options), m_occluders(visibility, scene.shapes().size(), options.levels) {}
+      m_projector(options), m_occluders(visibility, scene.shapes().size(), options.levels) {}
 
 wavelet::Tree TransferBuilder::constant(const Rgb& mean) const {
   wavelet::Tree tree;
@@ -144,24 +144,24 @@ wavelet::Tree TransferBuilder::make(const FilmPoint& point) {
   m_report = {};
   if (point.hit.object < 0)
     return constant(background(point));
-  m_terms.clear();
+  m_factors.clear();
   const int moved = m_variation.varying == Varying::Object ? m_variation.index : -1;
   for (const wavelet::TreeView& visibility : m_occluders.at(point.hit, moved))
-    m_terms.push_back({visibility, nullptr});
+    m_factors.push_back({visibility, nullptr});
   const bool varying = varies(point);
   const bool keeps_light = m_variation.varying != Varying::Light;
   const bool keeps_reflectance =
       m_variation.varying == Varying::Light || m_variation.varying == Varying::Object || !varying;
   if (keeps_light)
-    m_terms.push_back(m_light);
+    m_factors.push_back(m_light);
   const Light& light = m_scene.light();
   const wavelet::RotatedReflectance reflectance =
       m_scene.material_of(point.hit.object)
           .reflectance(shading_point(light.to_light(point.hit.normal), light.to_light(point.wo)));
-  wavelet::Tree tree = m_projection.make(m_terms, keeps_reflectance ? &reflectance : nullptr);
+  wavelet::Tree tree = m_projector.make(m_factors, keeps_reflectance ? &reflectance : nullptr);
   if (!varying)
     return constant(tree.mean);
-  m_report = m_projection.report();
+  m_report = m_projector.report();
   return tree;
 }
 
@@ -179,13 +179,13 @@ double default_transfer_tolerance(Varying varying) {
 wavelet::SetInfo transfer_info(const SceneDescription& scene, const Variation& variation,
                                const wavelet::ProjectionOptions& options, int width, int height) {
   wavelet::SetInfo info;
+  info.kind = wavelet::SetKind::Transfer;
   info.size = 1 << options.levels;
   info.columns = width;
   info.rows = height;
   info.frame = "the light's: the world (right +x, up +y, forward -z) turned by the scene's rotate";
   info.units = units_of(variation.varying);
   Provenance& p = info.provenance;
-  p.set("transfer", "1");
   p.set("scene", base_name(scene.path));
   p.set("scene_hash", scene.hash);
   p.set("vary", variation_text(scene, variation));

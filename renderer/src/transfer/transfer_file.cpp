@@ -76,8 +76,12 @@ Variation variation_from_text(const SceneDescription& scene, const std::string& 
                               "' is not one of light, object:NAME, material:NAME, view");
 }
 
+bool is_transfer(const wavelet::SetInfo& info) {
+  return info.kind == wavelet::SetKind::Transfer || info.provenance.get("transfer") == "1";
+}
+
 Transfer::Transfer(const std::string& path) : m_set(wavelet::open_tree_set(path)) {
-  if (varying_text().empty() || provenance().get("transfer") != "1")
+  if (varying_text().empty() || !is_transfer(m_set.info()))
     throw_input_error(path, "holds no transfer; haarrelight build makes files that do");
   m_trees.reserve(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
   for (int y = 0; y < height(); ++y)

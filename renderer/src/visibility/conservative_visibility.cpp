@@ -11,8 +11,8 @@ namespace haarlight::renderer::detail {
 namespace {
 
 using wavelet::RegionPart;
+using wavelet::Square;
 using wavelet::SquareCap;
-using wavelet::SquarePlace;
 using wavelet::SquareView;
 
 /// Whether the face of a box at the low or high end of an axis is visible from a point.
@@ -79,7 +79,7 @@ constexpr std::size_t batches = 2;
 constexpr unsigned all_points = 0xFF;
 using Points = std::array<Lanes3, batches>;
 
-Points points_of(const SquarePlace& square) {
+Points points_of(const Square& square) {
   constexpr Float4 columns[batches] = {{0.5F, 1.5F, 2.5F, 3.5F}, {4.5F, 5.5F, 6.5F, 7.5F}};
   constexpr Float4 rows[batches] = {{1.5F, 4.5F, 7.5F, 2.5F}, {5.5F, 0.5F, 3.5F, 6.5F}};
   const float step = power_of_two(-square.level - 3);
@@ -127,7 +127,7 @@ unsigned points_behind(const Points& points, const Obstacle& obstacle) {
 /// affect the square.
 class VisibilityQuery {
 public:
-  VisibilityQuery(const SquarePlace& square, const Vec3& normal)
+  VisibilityQuery(const Square& square, const Vec3& normal)
       : m_square(square), m_cap(wavelet::square_cap(square)), m_normal(normal) {}
 
   /// Removes the points that an obstacle occludes.
@@ -173,7 +173,7 @@ private:
     return *m_points;
   }
 
-  SquarePlace m_square;
+  Square m_square;
   SquareCap m_cap;
   Vec3 m_normal;
   std::optional<Points> m_points;
@@ -219,14 +219,13 @@ void ConservativeVisibility::add(const Solid& solid, const Eigen::Vector3d& orig
         solid.to_object.vector(m_light.to_world(Vec3::Unit(i)).cast<double>()).cast<float>();
 }
 
-void ConservativeVisibility::look(std::span<const SquarePlace> squares,
-                                  std::span<SquareView> views) {
+void ConservativeVisibility::query_visibility(std::span<const Square> squares,
+                                              std::span<SquareView> views) {
   for (std::size_t i = 0; i < squares.size(); ++i)
     views[i] = view_of(squares[i], views[i].occluders);
 }
 
-SquareView ConservativeVisibility::view_of(const SquarePlace& square,
-                                           std::uint64_t occluders) const {
+SquareView ConservativeVisibility::view_of(const Square& square, std::uint64_t occluders) const {
   VisibilityQuery query(square, m_normal);
   std::uint64_t in_part = 0;
   for (std::uint64_t rest = occluders; rest != 0; rest &= rest - 1) {

@@ -6,8 +6,8 @@
 #include <renderer/shapes/shapes.h>
 #include <renderer/visibility/visibility.h>
 
+#include <wavelet/product/adaptive_product.h>
 #include <wavelet/product/region.h>
-#include <wavelet/product/square_visibility.h>
 #include <wavelet/square/square_cap.h>
 
 #include <array>
@@ -66,12 +66,12 @@ public:
   /// @param from its normal points to the viewer's side
   void set_shading_point(const Hit& from);
 
-  void look(std::span<const wavelet::SquarePlace> squares,
-            std::span<wavelet::SquareView> views) override;
+  void query_visibility(std::span<const wavelet::Square> squares,
+                        std::span<wavelet::SquareView> views) override;
 
 private:
   void add(const Solid& solid, const Eigen::Vector3d& origin);
-  wavelet::SquareView view_of(const wavelet::SquarePlace& square, std::uint64_t occluders) const;
+  wavelet::SquareView view_of(const wavelet::Square& square, std::uint64_t occluders) const;
 
   const ShapeSet& m_shapes;
   const Light& m_light;

@@ -4,7 +4,7 @@
 
 #include <probe/probe_maps.h>
 #include <renderer/visibility/visibility.h>
-#include <wavelet/product/masked_product.h>
+#include <wavelet/product/adaptive_product.h>
 #include <wavelet/square/sphere_map.h>
 #include <wavelet/transform/compress.h>
 
@@ -28,10 +28,8 @@ constexpr std::size_t most_leaves = 1 << 16;
 
 Vec3 leaf_direction(const MaskedLeaf& leaf, std::size_t point) {
   constexpr float low = 0.21132487F;
-  const float side = power_of_two(-leaf.level);
   return wavelet::square_to_sphere(
-      Vec2((static_cast<float>(leaf.x) + ((point & 1U) == 0 ? low : 1 - low)) * side,
-           (static_cast<float>(leaf.y) + ((point & 2U) == 0 ? low : 1 - low)) * side));
+      leaf.square.point((point & 1U) == 0 ? low : 1 - low, (point & 2U) == 0 ? low : 1 - low));
 }
 
 /// The light's tree, built from the probe without dropping coefficients if there is one.
@@ -101,7 +99,7 @@ private:
   }
 
   static Rgb light_on(const MaskedLeaf& leaf) {
-    return wavelet::to_rgb(leaf.left) * power_of_two(-2 * leaf.level);
+    return wavelet::to_rgb(leaf.visible_light) * leaf.square.area();
   }
 
   /// Sum of the contributions' absolute values.
@@ -116,7 +114,7 @@ private:
   void add_or_split(float largest) {
     m_next.clear();
     for (std::size_t i = 0; i < m_leaves.size(); ++i) {
-      if (m_leaves[i].level < finest_split_level && m_next.size() + 4 <= most_leaves &&
+      if (m_leaves[i].square.level < finest_split_level && m_next.size() + 4 <= most_leaves &&
           range(i) > largest)
         m_masked.split(m_leaves[i], m_next);
       else

@@ -35,8 +35,8 @@ namespace {
 using namespace detail;
 using wavelet::RegionPart;
 using wavelet::RegionTreeBuilder;
+using wavelet::Square;
 using wavelet::SquareCap;
-using wavelet::SquarePlace;
 using wavelet::Tree;
 
 /// 1 within a cap and 0 outside, or the reverse.
@@ -44,16 +44,16 @@ class CapRegion final : public wavelet::Region {
 public:
   CapRegion(const Cap& cap, bool reverse) : m_cap(cap), m_reverse(reverse) {}
 
-  RegionPart classify(const SquarePlace& square) const override {
+  RegionPart classify(const Square& square) const override {
     const RegionPart part = m_cap.classify(wavelet::square_cap(square));
     if (part == RegionPart::Partial)
       return part;
     return (part == RegionPart::Inside) != m_reverse ? RegionPart::Inside : RegionPart::Outside;
   }
 
-  float coverage(const SquarePlace& square) const override {
+  float coverage(const Square& square) const override {
     const Vec3& a = m_cap.axis;
-    const float inside = wavelet::positive_share_of(square, [&](Float4 x, Float4 y, Float4 z) {
+    const float inside = wavelet::positive_fraction_of(square, [&](Float4 x, Float4 y, Float4 z) {
       const Float4 dx = x - a.x();
       const Float4 dy = y - a.y();
       const Float4 dz = z - a.z();
@@ -71,7 +71,7 @@ private:
 constexpr std::size_t net_size = 16;
 
 /// Points of a square, a (0, 2)-net of 16 points (Sobol'); the first 4 are a net, too.
-Vec2 net_point(const SquarePlace& square, std::size_t index) {
+Vec2 net_point(const Square& square, std::size_t index) {
   static constexpr std::array<std::uint8_t, net_size> columns = {0, 8, 4, 12, 2, 10, 6, 14,
                                                                  1, 9, 5, 13, 3, 11, 7, 15};
   static constexpr std::array<std::uint8_t, net_size> rows = {0,  8, 12, 4,  10, 2,  6, 14,
@@ -209,14 +209,14 @@ public:
   SolidRegion(const Solid& solid, const Eigen::Vector3d& origin, const Light& light)
       : m_rays(solid, origin, light) {}
 
-  RegionPart classify(const SquarePlace& square) const override {
+  RegionPart classify(const Square& square) const override {
     const SquareCap cap = wavelet::square_cap(square);
     if (m_rays.all_miss(cap))
       return RegionPart::Inside;
     return m_rays.all_hit(cap) ? RegionPart::Outside : RegionPart::Partial;
   }
 
-  float coverage(const SquarePlace& square) const override {
+  float coverage(const Square& square) const override {
     int missed = 0;
     for (std::size_t i = 0; i < net_size; ++i)
       missed += m_rays.intersects(wavelet::square_to_sphere(net_point(square, i))) ? 0 : 1;
@@ -236,19 +236,19 @@ public:
   HorizonRegion(const Vec3& normal, const std::optional<SolidRays>& own)
       : m_normal(normal), m_horizon(Cap::half_space(normal), false), m_own(own) {}
 
-  RegionPart classify(const SquarePlace& square) const override {
+  RegionPart classify(const Square& square) const override {
     const RegionPart part = m_horizon.classify(square);
     return part == RegionPart::Inside && m_own ? RegionPart::Partial : part;
   }
 
-  float coverage(const SquarePlace& square) const override {
+  float coverage(const Square& square) const override {
     const float above = m_horizon.coverage(square);
     return m_own && above > 0 ? above * unoccluded_fraction(square) : above;
   }
 
 private:
   /// Of the part of a square above the horizon; takes more rays where the first few disagree.
-  float unoccluded_fraction(const SquarePlace& square) const {
+  float unoccluded_fraction(const Square& square) const {
     constexpr std::size_t few = 4;
     float all = 0;
     float missed = 0;

@@ -17,14 +17,14 @@ using namespace haarlight::renderer;
 using detail::Lanes3;
 using detail::Solid;
 using detail::SolidKind;
-using wavelet::SquarePlace;
+using wavelet::Square;
 using wavelet::SquareView;
 
 namespace {
 
 /// The share of a square above the horizon of a hit from which rays get by all shapes; none where
 /// nothing lies above.
-std::optional<double> ray_share(const ShapeSet& set, const Hit& hit, const SquarePlace& square) {
+std::optional<double> ray_share(const ShapeSet& set, const Hit& hit, const Square& square) {
   constexpr std::uint32_t side = 16;
   const float step = power_of_two(-square.level) / side;
   int above = 0;
@@ -50,9 +50,9 @@ double mean_error(detail::ConservativeVisibility& squares, const ShapeSet& set, 
   const auto side = 1U << static_cast<unsigned>(level);
   double sum = 0;
   for (std::uint32_t i = 0; i < side * side; ++i) {
-    const SquarePlace place = {level, i % side, i / side};
+    const Square place = {level, i % side, i / side};
     SquareView view;
-    squares.look({&place, 1}, {&view, 1});
+    squares.query_visibility({&place, 1}, {&view, 1});
     const std::optional<double> share = ray_share(set, hit, place);
     if (!share)
       continue;
@@ -86,15 +86,15 @@ TEST_CASE("the occluders of a quadrant are among those of its square", "[seen]")
     detail::ConservativeVisibility squares(set, turned_light());
     squares.set_shading_point(hit);
     for (std::uint32_t i = 0; i < 64; ++i) {
-      SquarePlace place = {3, i % 8, i / 8};
+      Square place = {3, i % 8, i / 8};
       SquareView whole;
-      squares.look({&place, 1}, {&whole, 1});
+      squares.query_visibility({&place, 1}, {&whole, 1});
       for (unsigned q = 0; q < 4; ++q) {
-        place = SquarePlace{3, i % 8, i / 8}.quadrant(q);
+        place = Square{3, i % 8, i / 8}.quadrant(q);
         SquareView alone;
         SquareView told = {1, whole.occluders};
-        squares.look({&place, 1}, {&alone, 1});
-        squares.look({&place, 1}, {&told, 1});
+        squares.query_visibility({&place, 1}, {&alone, 1});
+        squares.query_visibility({&place, 1}, {&told, 1});
         if (whole.seen > 0)
           CHECK(told.seen == alone.seen);
         CHECK((told.occluders & ~whole.occluders) == 0);

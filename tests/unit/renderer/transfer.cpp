@@ -112,6 +112,32 @@ TEST_CASE("a light that varies: its own place, another turn, another light") {
   CHECK(difference(relit.make_in(other, {}), rendered(other)) < 0.02);
 }
 
+TEST_CASE("transfer files say what they are in the header; older ones in the provenance") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("t.haar");
+  const Variation variation = variation_from_text(small_scene(), "light");
+  wavelet::SetInfo info = transfer_info(small_scene(), variation, {}, 1, 1);
+  CHECK(info.kind == wavelet::SetKind::Transfer);
+  const auto write = [&] {
+    OutputFile file(path);
+    wavelet::TreeSetWriter writer(file, info, 3, wavelet::CoefficientType::Half);
+    wavelet::Tree tree;
+    tree.levels = wavelet::ProjectionOptions().levels;
+    tree.level_begin.assign(static_cast<std::size_t>(tree.levels) + 1, 0);
+    writer.add(tree);
+    writer.finish();
+    file.commit();
+  };
+  write();
+  CHECK(Transfer(path).width() == 1);
+  info.kind = wavelet::SetKind::Generic;
+  write();
+  CHECK_THROWS_AS(Transfer(path), Error);
+  info.provenance.set("transfer", "1");
+  write();
+  CHECK(Transfer(path).width() == 1);
+}
+
 TEST_CASE("a light turns on top of the scene's own turn, about any axis") {
   SceneDescription scene = small_scene();
   scene.light.rotate = 30;

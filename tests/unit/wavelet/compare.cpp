@@ -6,7 +6,6 @@
 #include <wavelet/transform/compress.h>
 #include <wavelet/transform/transform.h>
 #include <wavelet/tree/compare.h>
-#include <wavelet/tree/map_views.h>
 
 #include <catch2/catch.hpp>
 

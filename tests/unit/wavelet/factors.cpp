@@ -1,10 +1,11 @@
 #include "product_of.h"
 #include "random_map.h"
+#include "reference_basis.h"
 #include "tree_views.h"
 
 #include <wavelet/product/multiply.h>
+#include <wavelet/product/projection.h>
 #include <wavelet/product/synchronous_product.h>
-#include <wavelet/reference/reference.h>
 #include <wavelet/square/sphere_map.h>
 #include <wavelet/transform/compress.h>
 
@@ -55,36 +56,8 @@ Eigen::Array3d mean_of(const std::vector<Eigen::Array3d>& pixels) {
   return sum / static_cast<double>(pixels.size());
 }
 
-/// Light inside a disc of the square, dark outside: known by its averages alone.
-class Disc final : public Factor {
-public:
-  Float4 mean() const override { return average({0, 0, 0}); }
-  std::uint32_t root() const override { return 0; }
-  void split(const FactorSquares& squares, const FactorQuadrants& out) const override {
-    for (std::size_t i = 0; i < squares.count; ++i)
-      for (unsigned q = 0; q < 4; ++q) {
-        out.mean[4 * i + q] = average(squares.place[i].quadrant(q));
-        const float share = out.mean[4 * i + q][0];
-        out.detail[4 * i + q] = share > 0 && share < 1 ? 0 : no_node;
-      }
-  }
-  static bool inside(double u, double v) { return std::hypot(u - 0.4, v - 0.5) < 0.3; }
-
-private:
-  /// By the pixels of a 32 × 32 grid.
-  static Float4 average(const SquarePlace& s) {
-    const int side = 32 >> s.level;
-    int sum = 0;
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x)
-        sum += inside((static_cast<double>(s.column) * side + x + 0.5) / 32,
-                      (static_cast<double>(s.row) * side + y + 0.5) / 32)
-                   ? 1
-                   : 0;
-    const float share = static_cast<float>(sum) / static_cast<float>(side * side);
-    return Float4{share, share, share, 0};
-  }
-};
+/// 1 inside a disc, on a grid of 32 × 32 pixels.
+bool in_disc(int x, int y) { return std::hypot((x + 0.5) / 32 - 0.4, (y + 0.5) / 32 - 0.5) < 0.3; }
 
 } // namespace
 
@@ -162,20 +135,24 @@ TEST_CASE("products dropped as they are made stay within what was dropped") {
   }
 }
 
-TEST_CASE("any function with averages can be a factor") {
-  const std::vector<Tree> trees = random_trees(2, 60);
+TEST_CASE("constants and functions with zeros are factors like any other") {
+  std::vector<Tree> trees = random_trees(2, 60);
+  Map disc(32);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      disc.set(x, y, Rgb::Constant(in_disc(x, y) ? 1.0F : 0.0F));
+  trees.push_back(tree_of(disc, 0));
+  Tree constant;
+  constant.mean = Rgb(0.5F, 2, 1);
+  trees.push_back(constant);
   const std::vector<TreeView> views = views_of(trees);
-  const TreeFactor first(views[0]);
-  const TreeFactor second(views[1]);
-  const ConstantFactor constant(Rgb(0.5F, 2, 1));
-  const Disc disc;
-  const Factor* const factors[] = {&first, &disc, &constant, &second};
+  const TreeFactor factors[] = {TreeFactor(views[0]), TreeFactor(views[2]), TreeFactor(views[3]),
+                                TreeFactor(views[1])};
   SynchronousProduct builder;
   const ProductTree& product = builder.build(factors);
-  auto dense = dense_product(views, 5);
+  auto dense = dense_product({views[0], views[1]}, 5);
   for (std::size_t i = 0; i < dense.size(); ++i)
-    dense[i] *= Disc::inside((static_cast<double>(i % 32) + 0.5) / 32,
-                             (static_cast<double>(i / 32) + 0.5) / 32)
+    dense[i] *= in_disc(static_cast<int>(i % 32), static_cast<int>(i / 32))
                     ? Eigen::Array3d(0.5, 2, 1)
                     : Eigen::Array3d(0, 0, 0);
   const Eigen::Array3d expected = mean_of(dense);
@@ -186,7 +163,7 @@ TEST_CASE("any function with averages can be a factor") {
   CHECK(result.statistic < result.limit);
 }
 
-TEST_CASE("a rotated reflectance is a factor like any other") {
+TEST_CASE("the integral with a rotated reflectance is the dense sum over rotated directions") {
   Map lobe(64);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) {
@@ -200,10 +177,12 @@ TEST_CASE("a rotated reflectance is a factor like any other") {
   const Tree light = tree_of(random_map(64, 3), 0.1);
   const RotatedReflectance reflectance = {&pyramid, 0, 1, 0.5F,
                                           reflection_frame(Vec3::UnitX(), Vec3(0.8F, 0.6F, 0))};
-  const TreeFactor light_factor(light.view());
-  const RotatedFactor rotated(reflectance);
-  const Factor* const factors[] = {&light_factor, &rotated};
-  SynchronousProduct builder;
+  ProjectionOptions options;
+  options.levels = 6;
+  options.tolerance = 1e-3;
+  const ProjectionFactor factors[] = {{light.view(), nullptr}};
+  ProductProjector projector(options);
+  projector.make(factors, &reflectance);
   const Map light_map = light.view().reconstruct(6);
   Eigen::Array3d expected = Eigen::Array3d::Zero();
   for (int y = 0; y < 64; ++y)
@@ -214,7 +193,7 @@ TEST_CASE("a rotated reflectance is a factor like any other") {
           Rgb(1.0F, 0.8F, 0.5F) * std::exp(6 * (reflectance.reflection.frame.n.dot(w) - 1));
       expected += (light_map.at(x, y) * value).cast<double>() / 4096;
     }
-  const Rgb found = builder.build(factors).integral();
+  const Rgb found = projector.mean();
   CHECK(((found.cast<double>() - expected).abs() / expected).maxCoeff() < 0.01);
 }
 
@@ -237,7 +216,7 @@ TEST_CASE("trees give the averages of their quadrants, however they are turned o
           const SquareSymmetry symmetry = {turns, mirrored};
           Float4 means[4];
           std::uint32_t details[4];
-          TreeFactor(view, symmetry).split({nullptr, &slot, &mean, &root, 1}, {means, details});
+          TreeFactor(view, symmetry).split({&slot, &mean, &root, 1}, {means, details});
           for (unsigned q = 0; q < 4; ++q) {
             const unsigned stored = symmetry.to_stored(q);
             const Rgb expected =
@@ -252,9 +231,8 @@ TEST_CASE("trees give the averages of their quadrants, however they are turned o
 TEST_CASE("descents side by side are those one by one") {
   const std::vector<Tree> trees = random_trees(2, 80);
   const TreeFactor factors[2] = {TreeFactor(trees[0].view()), TreeFactor(trees[1].view())};
-  const Factor* const pointers[] = {&factors[0], &factors[1]};
   SynchronousProduct builder;
-  const ProductTree& product = builder.build(pointers);
+  const ProductTree& product = builder.build(factors);
   std::mt19937 generator(5);
   std::uniform_real_distribution<float> uniform(0, 1);
   for (const std::size_t count : {1U, 31U, 64U, 200U}) {

@@ -1,7 +1,6 @@
 #include "temporary_folder.h"
 
 #include <wavelet/base/error.h>
-#include <wavelet/file/file_hash.h>
 #include <wavelet/file/input_file.h>
 
 #include <catch2/catch.hpp>

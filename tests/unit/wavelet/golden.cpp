@@ -3,7 +3,7 @@
 #include "set_files.h"
 #include "temporary_folder.h"
 
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <catch2/catch.hpp>
 

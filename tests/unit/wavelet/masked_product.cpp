@@ -3,7 +3,7 @@
 #include "lobe_trees.h"
 #include "random_map.h"
 
-#include <wavelet/product/masked_product.h>
+#include <wavelet/product/adaptive_product.h>
 #include <wavelet/product/multiply.h>
 #include <wavelet/product/region.h>
 #include <wavelet/square/square_cap.h>
@@ -20,14 +20,14 @@ class Lid : public Region {
 public:
   Lid(const Vec3& axis, float cosine) : m_axis(axis.normalized()), m_cosine(cosine) {}
 
-  RegionPart classify(const SquarePlace& square) const override {
+  RegionPart classify(const Square& square) const override {
     if (square.level < 3)
       return RegionPart::Partial;
     const float share = coverage(square);
     return share == 0 ? RegionPart::Outside : share == 1 ? RegionPart::Inside : RegionPart::Partial;
   }
-  float coverage(const SquarePlace& square) const override {
-    return positive_share_of(square, [&](Float4 x, Float4 y, Float4 z) {
+  float coverage(const Square& square) const override {
+    return positive_fraction_of(square, [&](Float4 x, Float4 y, Float4 z) {
       return x * m_axis.x() + y * m_axis.y() + z * m_axis.z() - m_cosine;
     });
   }
@@ -56,7 +56,7 @@ struct Setting {
 Rgb sum_of(std::span<const MaskedLeaf> leaves) {
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   for (const MaskedLeaf& leaf : leaves)
-    sum += (to_rgb(leaf.left) * power_of_two(-2 * leaf.level)).cast<double>();
+    sum += (to_rgb(leaf.visible_light) * leaf.square.area()).cast<double>();
   return sum.cast<float>();
 }
 
@@ -95,8 +95,11 @@ TEST_CASE("masked leaves may be split as far as wanted", "[masked]") {
   const std::vector<TreeView> factors = {s.masks[0].view(), s.masks[1].view(), s.light.view()};
   const Tree product = multiply(factors);
   for (std::size_t i = 0; i < all.size(); i += 97) {
-    const Rgb expected = product.view().average(all[i].level, all[i].x, all[i].y);
-    CHECK((to_rgb(all[i].left) - expected).abs().maxCoeff() < 1e-4F * (1 + expected.maxCoeff()));
+    const Square& place = all[i].square;
+    const Rgb expected = product.view().average(place.level, static_cast<int>(place.column),
+                                                static_cast<int>(place.row));
+    CHECK((to_rgb(all[i].visible_light) - expected).abs().maxCoeff() <
+          1e-4F * (1 + expected.maxCoeff()));
   }
 }
 

@@ -2,7 +2,7 @@
 #include "temporary_folder.h"
 
 #include <wavelet/base/error.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <catch2/catch.hpp>
 

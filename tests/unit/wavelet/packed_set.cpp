@@ -4,7 +4,7 @@
 
 #include <wavelet/base/error.h>
 #include <wavelet/base/parallel.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include <wavelet/base/out_of_memory.h>
+#include <wavelet/base/memory.h>
 #include <wavelet/base/parallel.h>
 
 #include <catch2/catch.hpp>

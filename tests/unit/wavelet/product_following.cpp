@@ -48,7 +48,7 @@ TEST_CASE("products that may not drift are those built afresh, and reach all the
     const Vec3 n(std::cos(turn), 0.6F * std::sin(turn), 0.8F * std::sin(turn));
     const Vec3 wo = (n + 0.9F * frame_about(n).t).normalized();
     const auto reflectance = reflectance_at(pyramid, n, wo, 0.5F);
-    const ProductTree& product = following.follow(reflectance, {.drift_bound = 0});
+    const ProductTree& product = following.build_or_reuse(reflectance, {.reuse_variance_bound = 0});
     const ProductTree& built = fresh.build(reflectance, {});
     CHECK(product.leaf_count() == built.leaf_count());
     CHECK((product.integral() == built.integral()).all());
@@ -74,7 +74,7 @@ TEST_CASE("products that are kept for points nearby reach all that these need, a
     const Vec3 n(std::cos(turn), 0.6F * std::sin(turn), 0.8F * std::sin(turn));
     const Vec3 wo = (n + 1.5F * frame_about(n).t).normalized();
     const auto reflectance = pair.seen(n, wo, 0.5F);
-    const ProductTree& product = pair.following.follow(reflectance, {});
+    const ProductTree& product = pair.following.build_or_reuse(reflectance, {});
     const float integral = luminance(product.integral());
     kept += integral == last ? 1 : 0;
     last = integral;
@@ -101,17 +101,13 @@ TEST_CASE("products that are kept for points nearby reach all that these need, a
 namespace {
 
 /// Everything on one side of a plane.
-class HalfHidden : public Occlusion, public SquareVisibility {
+class HalfHidden : public SquareVisibility {
 public:
   explicit HalfHidden(const Vec3& side) : m_side(side) {}
   bool hides(const Vec3& w) const { return m_side.dot(w) > 0; }
-  void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const override {
-    for (std::size_t i = 0; i < directions.size(); ++i)
-      hidden[i] = hides(directions[i]) ? 1 : 0;
-  }
-  void look(std::span<const SquarePlace> squares, std::span<SquareView> views) override {
+  void query_visibility(std::span<const Square> squares, std::span<SquareView> views) override {
     for (std::size_t i = 0; i < squares.size(); ++i) {
-      const float seen = positive_share_of(squares[i], [&](Float4 x, Float4 y, Float4 z) {
+      const float seen = positive_fraction_of(squares[i], [&](Float4 x, Float4 y, Float4 z) {
         return -(m_side.x() * x + m_side.y() * y + m_side.z() * z);
       });
       views[i] = {seen, views[i].occluders * (seen > 0 && seen < 1 ? 1 : 0)};
@@ -149,17 +145,17 @@ TEST_CASE("products that know what is in the way spend few samples there, and mi
     const float turn = 0.02F * static_cast<float>(step);
     const Vec3 n(std::sin(turn), 0, std::cos(turn));
     const auto reflectance = pair.seen(n, n, 0);
-    const HalfHidden occlusion(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)));
+    HalfHidden occlusion(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)));
     const ProductTree& all = pair.fresh.build(reflectance, {});
-    const ProductTree& open = pair.following.follow(reflectance, {}, &occlusion);
+    const ProductTree& open = pair.following.build_or_reuse(reflectance, {}, &occlusion);
     CHECK(luminance(open.integral()) == Approx(luminance(all.integral())).epsilon(0.02));
     CHECK(relative_square(all, open, occlusion) < 10);
     CHECK(relative_square(all, all, occlusion) > 1.3 * relative_square(all, open, occlusion));
     const auto result = chi_square_of(open, 16);
     CHECK(result.pdf_sum == Approx(1).margin(2e-3));
     CHECK(result.statistic < result.limit);
-    CHECK(relative_square(all, pair.following.follow(reflectance, {}), HalfHidden(Vec3::Zero())) <
-          1.1);
+    CHECK(relative_square(all, pair.following.build_or_reuse(reflectance, {}),
+                          HalfHidden(Vec3::Zero())) < 1.1);
   }
 }
 
@@ -169,13 +165,13 @@ TEST_CASE("products by what is seen of squares are near the visible part, and mi
   for (int step = 0; step < 6; ++step) {
     HalfHidden half(Vec3(0.8F, 0.6F, 0.1F * static_cast<float>(step)).normalized());
     const ProductTree& all = pair.fresh.build(reflectance, {});
-    const ProductTree& open = pair.following.build(reflectance, {}, half);
+    const ProductTree& open = pair.following.build(reflectance, {}, &half, VisibilityTest::Squares);
     CHECK(relative_square(all, open, half, Vec3::UnitZ()) < 1.25);
     CHECK(relative_square(all, all, half, Vec3::UnitZ()) > 1.5);
     const auto result = chi_square_of(open, 16);
     CHECK(result.pdf_sum == Approx(1).margin(2e-3));
     CHECK(result.statistic < result.limit);
-    const ProductTree& followed = pair.following.follow(reflectance, {});
+    const ProductTree& followed = pair.following.build_or_reuse(reflectance, {});
     CHECK(relative_square(all, followed, HalfHidden(Vec3::Zero())) < 1.1);
   }
 }
@@ -187,7 +183,7 @@ TEST_CASE("products that may not grow follow to far points all the same") {
     const float turn = 0.5F * static_cast<float>(step);
     const Vec3 n(std::cos(turn), std::sin(turn), 0);
     const auto reflectance = pair.seen(n, n, 0);
-    const Rgb kept = pair.following.follow(reflectance, scarce).integral();
+    const Rgb kept = pair.following.build_or_reuse(reflectance, scarce).integral();
     CHECK(luminance(kept) ==
           Approx(luminance(pair.fresh.build(reflectance, scarce).integral())).epsilon(0.02));
   }

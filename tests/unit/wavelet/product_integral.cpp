@@ -1,10 +1,10 @@
 // Integrals of products of n functions, against pixels multiplied one by one.
 
 #include "random_map.h"
+#include "reference_basis.h"
 #include "tree_views.h"
 
 #include <wavelet/product/multiply.h>
-#include <wavelet/reference/reference.h>
 #include <wavelet/transform/compress.h>
 
 #include <catch2/catch.hpp>

@@ -4,7 +4,6 @@
 #include <wavelet/product/multiply.h>
 #include <wavelet/product/projection.h>
 #include <wavelet/transform/compress.h>
-#include <wavelet/transform/dense_coefficients.h>
 #include <wavelet/tree/pyramid.h>
 
 #include <catch2/catch.hpp>
@@ -79,8 +78,8 @@ TEST_CASE("a projection to no tolerance is the product of its trees") {
   const Tree a = tree_of(rough_map(1));
   const Tree b = tree_of(disk_map());
   const std::vector<float> variances = variances_within(a.view());
-  const std::vector<ProjectionTerm> terms = {{a.view(), variances.data()}, {b.view(), nullptr}};
-  Projection projection(exact());
+  const std::vector<ProjectionFactor> terms = {{a.view(), variances.data()}, {b.view(), nullptr}};
+  ProductProjector projection(exact());
   const Tree product = projection.make(terms, nullptr);
   const TreeView views[2] = {a.view(), b.view()};
   CHECK((projection.mean() - product_integral(views)).abs().maxCoeff() < 1e-4F);
@@ -94,14 +93,14 @@ TEST_CASE("a projection keeps its tolerance, its mean, and less the more it may 
   const Tree a = tree_of(rough_map(2));
   const Tree b = tree_of(disk_map());
   const std::vector<float> variances = variances_within(a.view());
-  const std::vector<ProjectionTerm> terms = {{a.view(), variances.data()}, {b.view(), nullptr}};
+  const std::vector<ProjectionFactor> terms = {{a.view(), variances.data()}, {b.view(), nullptr}};
   const TreeView views[2] = {a.view(), b.view()};
   const Map expected = multiply(views).view().reconstruct(levels);
   std::size_t last = 1U << (2 * levels);
   for (const double tolerance : {0.02, 0.1, 0.4}) {
     ProjectionOptions options = exact();
     options.tolerance = tolerance;
-    Projection projection(options);
+    ProductProjector projection(options);
     const Tree tree = projection.make(terms, nullptr);
     INFO("tolerance " << tolerance);
     CHECK(tree.links.size() < last);
@@ -120,14 +119,14 @@ TEST_CASE("a projection of what is constant has no nodes, and black stays black"
     std::fill(map.rgb.begin(), map.rgb.end(), 0.25F);
     return map;
   }());
-  Projection projection(exact());
-  const std::vector<ProjectionTerm> terms = {{grey.view(), nullptr}};
+  ProductProjector projection(exact());
+  const std::vector<ProjectionFactor> terms = {{grey.view(), nullptr}};
   const Tree tree = projection.make(terms, nullptr);
   CHECK(tree.links.empty());
   CHECK((tree.mean == 0.25F).all());
   Tree black = grey;
   black.mean = Rgb::Zero();
-  const std::vector<ProjectionTerm> none = {{grey.view(), nullptr}, {black.view(), nullptr}};
+  const std::vector<ProjectionFactor> none = {{grey.view(), nullptr}, {black.view(), nullptr}};
   CHECK((projection.make(none, nullptr).mean == 0).all());
 }
 
@@ -135,10 +134,10 @@ TEST_CASE("projected trees obey the file format") {
   const TemporaryFolder folder;
   const Tree a = tree_of(rough_map(3));
   const std::vector<float> variances = variances_within(a.view());
-  const std::vector<ProjectionTerm> terms = {{a.view(), variances.data()}};
+  const std::vector<ProjectionFactor> terms = {{a.view(), variances.data()}};
   ProjectionOptions options;
   options.levels = levels;
-  Projection projection(options);
+  ProductProjector projection(options);
   SetInfo info;
   info.size = 1 << levels;
   OutputFile file(folder.file("t.haar"));

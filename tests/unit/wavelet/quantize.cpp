@@ -1,8 +1,8 @@
 #include "set_files.h"
 #include "temporary_folder.h"
 
-#include <wavelet/file/packed_set.h>
-#include <wavelet/transform/quantize.h>
+#include <wavelet/file/tree_set.h>
+#include <wavelet/transform/threshold.h>
 #include <wavelet/transform/transform.h>
 
 #include <catch2/catch.hpp>

@@ -12,8 +12,6 @@ using namespace reference_test;
 
 namespace {
 
-constexpr BasisFunction mother_scaling = {};
-
 /// What a sampled tuple of functions is drawn about.
 struct Draw {
   int functions;    ///< how many
@@ -26,8 +24,11 @@ std::vector<BasisFunction> random_tuple(const Draw& draw, std::mt19937& generato
   const auto below = [&](int n) {
     return static_cast<int>(generator() % static_cast<unsigned>(n));
   };
-  const int side = 1 << draw.finest_scale;
-  const Square finest = {draw.finest_scale, below(side), below(side)};
+  const auto any_square = [&](int level) {
+    const auto column = static_cast<std::uint32_t>(below(1 << level));
+    return Square{level, column, static_cast<std::uint32_t>(below(1 << level))};
+  };
+  const Square finest = any_square(draw.finest_scale);
   std::vector<BasisFunction> tuple = {{finest, draw.type}};
   while (static_cast<int>(tuple.size()) < draw.functions) {
     const int level = below(draw.finest_scale + 1);
@@ -37,9 +38,9 @@ std::vector<BasisFunction> random_tuple(const Draw& draw, std::mt19937& generato
     else if (choice < 12)
       tuple.push_back(mother_scaling);
     else if (choice < 19)
-      tuple.push_back({ancestor(finest, level), 1 + below(3)});
+      tuple.push_back({finest.ancestor(level), 1 + below(3)});
     else
-      tuple.push_back({{level, below(1 << level), below(1 << level)}, 1 + below(3)});
+      tuple.push_back({any_square(level), 1 + below(3)});
   }
   std::shuffle(tuple.begin(), tuple.end(), generator);
   return tuple;
@@ -170,7 +171,7 @@ TEST_CASE("reference: the exponent of the theorem is not the one printed") {
   const Basis basis(32);
   for (int j0 = 0; j0 <= 4; ++j0)
     for (int type = 1; type <= 3; ++type) {
-      const BasisFunction f = {{j0, (1 << j0) / 2, 0}, type};
+      const BasisFunction f = {{j0, (1U << j0) / 2, 0}, type};
       const std::vector<BasisFunction> tuple = {f, f, f, f};
       const double dense = dense_integral(tuple, basis);
       CHECK(product_integral(tuple) == dense);
@@ -203,7 +204,7 @@ TEST_CASE("reference: signs are those of the transform, over every square inside
     const Square outer = {1, 1, 0};
     const Image image = basis_image({outer, m}, 16);
     for_each_square(4, [&](const Square& s) {
-      if (s.level > outer.level && contains(outer, s))
+      if (s.level > outer.level && outer.contains(s))
         CHECK(2 * sign_over(m, outer, s) == average_of(image, s));
     });
   }

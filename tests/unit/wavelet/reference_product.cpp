@@ -115,10 +115,10 @@ TEMPLATE_TEST_CASE("reference: an image comes back from its coefficients, at any
     CHECK(set.levels == levels);
     for (int level = 0; level <= levels + 1; ++level) {
       Image expected;
-      for (int y = 0; y < (1 << level); ++y)
-        for (int x = 0; x < (1 << level); ++x) {
+      for (unsigned y = 0; y < (1U << level); ++y)
+        for (unsigned x = 0; x < (1U << level); ++x) {
           const Square s = {level, x, y};
-          expected.push_back(average_of(image, ancestor(s, std::min(level, levels))));
+          expected.push_back(average_of(image, s.ancestor(std::min(level, levels))));
         }
       CHECK(largest_difference(dense(set, level), expected) < tolerance<TestType> * largest(image));
     }
@@ -239,9 +239,9 @@ TEST_CASE("reference: below the finest wavelets functions are constant") {
   const auto h = sparse_set<double>(3, 20, 2);
   ParentSums<double> g_of(g);
   Product<double> product(g, h);
-  for (int i = 0; i < 64; ++i) {
+  for (unsigned i = 0; i < 64; ++i) {
     const Square pixel = {3, i % 8, i / 8};
-    const Square inside = {7, 16 * pixel.x + 5, 16 * pixel.y + 11};
+    const Square inside = {7, 16 * pixel.column + 5, 16 * pixel.row + 11};
     CHECK(g_of(inside) == g_of(pixel));
     CHECK(product.average(inside) == product.average(pixel));
     CHECK(product.coefficient(inside, 2) == 0);

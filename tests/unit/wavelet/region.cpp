@@ -20,7 +20,7 @@ public:
   TestCap(const Vec3& axis, float angle)
       : m_axis(axis.normalized()), m_angle(angle), m_cosine(std::cos(angle)) {}
 
-  RegionPart classify(const SquarePlace& square) const override {
+  RegionPart classify(const Square& square) const override {
     const SquareCap cap = square_cap(square);
     const float radius = std::acos(cap.cosine);
     const float away = std::acos(std::clamp(m_axis.dot(cap.centre), -1.0F, 1.0F));
@@ -29,8 +29,8 @@ public:
     return away - radius >= m_angle ? RegionPart::Outside : RegionPart::Partial;
   }
 
-  float coverage(const SquarePlace& square) const override {
-    return positive_share_of(square, [&](Float4 x, Float4 y, Float4 z) {
+  float coverage(const Square& square) const override {
+    return positive_fraction_of(square, [&](Float4 x, Float4 y, Float4 z) {
       return x * m_axis.x() + y * m_axis.y() + z * m_axis.z() - m_cosine;
     });
   }
@@ -54,7 +54,7 @@ std::vector<TestCap> caps() {
 }
 
 /// The average over a square by 64 × 64 points.
-double dense_share(const TestCap& cap, const SquarePlace& square) {
+double dense_share(const TestCap& cap, const Square& square) {
   constexpr int points = 64;
   const float side = power_of_two(-square.level);
   int inside = 0;
@@ -67,13 +67,13 @@ double dense_share(const TestCap& cap, const SquarePlace& square) {
   return static_cast<double>(inside) / (points * points);
 }
 
-float checkerboard(const SquarePlace& square) { return (square.column + square.row) % 3 == 0; }
+float checkerboard(const Square& square) { return (square.column + square.row) % 3 == 0; }
 
 /// Nothing but noise at the finest level.
 class Checkerboard : public Region {
 public:
-  RegionPart classify(const SquarePlace&) const override { return RegionPart::Partial; }
-  float coverage(const SquarePlace& square) const override { return checkerboard(square); }
+  RegionPart classify(const Square&) const override { return RegionPart::Partial; }
+  float coverage(const Square& square) const override { return checkerboard(square); }
 };
 
 } // namespace

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <wavelet/tree/slope.h>
+#include <wavelet/tree/descent.h>
 
 #include <array>
 

@@ -1,9 +1,5 @@
-// The blocked transform against plain lifting, bit by bit, for every width of vectors that this
-// processor has.
+// The transform in tiles and vectors against plain lifting, bit by bit.
 
-#include "transform/transform_lanes.h"
-
-#include <wavelet/base/parallel.h>
 #include <wavelet/transform/transform.h>
 
 #include <catch2/catch.hpp>
@@ -98,40 +94,22 @@ private:
   std::vector<T> m_all;
 };
 
-std::vector<haar::Width> widths() {
-  std::vector<haar::Width> all;
-  for (const auto width : {haar::Width::Sse, haar::Width::Avx, haar::Width::Avx512})
-    if (width <= haar::widest())
-      all.push_back(width);
-  return all;
-}
-
 template <class T>
 bool forward_as_plain(int size, int channels) {
   Guarded<T> plain(static_cast<std::size_t>(size) * size * channels);
-  const Guarded<T> image = plain;
+  Guarded<T> ours = plain;
   plain_forward(plain.data(), size, channels);
-  for (const haar::Width width : widths()) {
-    Guarded<T> ours = image;
-    haar::forward(ours.data(), size, channels, width);
-    if (!(ours == plain))
-      return false;
-  }
-  return true;
+  haar_forward(ours.data(), size, channels);
+  return ours == plain;
 }
 
 template <class T>
 bool inverse_as_plain(int size, int channels) {
   Guarded<T> plain(static_cast<std::size_t>(size) * size * channels);
-  const Guarded<T> image = plain;
+  Guarded<T> ours = plain;
   plain_inverse(plain.data(), size, channels);
-  for (const haar::Width width : widths()) {
-    Guarded<T> ours = image;
-    haar::inverse(ours.data(), size, channels, width);
-    if (!(ours == plain))
-      return false;
-  }
-  return true;
+  haar_inverse(ours.data(), size, channels);
+  return ours == plain;
 }
 
 template <class T>
@@ -139,21 +117,6 @@ void check(int size, int channels) {
   INFO("size " << size << ", channels " << channels << ", bytes " << sizeof(T));
   CHECK(forward_as_plain<T>(size, channels));
   CHECK(inverse_as_plain<T>(size, channels));
-}
-
-template <class T>
-void check_batch(std::size_t count, int size, int channels) {
-  Guarded<T> batch(count * static_cast<std::size_t>(size) * size * channels);
-  Guarded<T> one_by_one = batch;
-  const std::size_t step = static_cast<std::size_t>(size) * size * channels;
-  for (std::size_t i = 0; i < count; ++i)
-    haar_forward(one_by_one.data() + i * step, size, channels);
-  haar_forward_batch(batch.data(), count, size, channels);
-  CHECK(batch == one_by_one);
-  for (std::size_t i = 0; i < count; ++i)
-    haar_inverse(one_by_one.data() + i * step, size, channels);
-  haar_inverse_batch(batch.data(), count, size, channels);
-  CHECK(batch == one_by_one);
 }
 
 } // namespace
@@ -176,14 +139,3 @@ TEST_CASE("the transform has the bits of plain lifting in images of many tiles")
 }
 
 TEST_CASE("the largest image has the bits of plain lifting", "[.large]") { check<float>(8192, 1); }
-
-TEST_CASE("a batch is its images one by one, whatever the number of threads") {
-  for (const int threads : {1, 2, 5}) {
-    const ThreadLimit limit(threads);
-    check_batch<float>(300, 16, 3);
-    check_batch<double>(300, 16, 1);
-    check_batch<float>(3, 256, 1);
-    check_batch<double>(3, 128, 3);
-    check_batch<float>(0, 64, 1);
-  }
-}

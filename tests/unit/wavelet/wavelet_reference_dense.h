@@ -2,6 +2,8 @@
 // Dense ways to what the reference algorithms find through coefficients: images of functions,
 // multiplied and averaged pixel by pixel, in double.
 
+#include "reference_basis.h"
+
 #include <wavelet/reference/reference.h>
 #include <wavelet/transform/transform.h>
 
@@ -13,9 +15,9 @@
 
 namespace reference_test {
 
+using haarlight::wavelet::Square;
 using haarlight::wavelet::reference::BasisFunction;
 using haarlight::wavelet::reference::CoefficientSet;
-using haarlight::wavelet::reference::Square;
 
 using Image = std::vector<double>;
 
@@ -26,16 +28,17 @@ inline int side_of(const Image& image) {
 /// A basis function's pixels: wavelets by inverse transform of one difference.
 inline Image basis_image(const BasisFunction& f, int size) {
   Image image(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-  const auto [l, x, y] = f.square;
+  const int l = f.square.level;
   if (f.m > 0) {
-    image[haarlight::wavelet::coefficient_index(size, l, x, y, f.m)] = std::ldexp(1.0, l);
+    image[haarlight::wavelet::coefficient_index(size, f.square, f.m)] = std::ldexp(1.0, l);
     haarlight::wavelet::haar_inverse(image.data(), size, 1);
     return image;
   }
-  const int side = size >> l;
-  for (int j = y * side; j < (y + 1) * side; ++j)
-    for (int i = x * side; i < (x + 1) * side; ++i)
-      image[static_cast<std::size_t>(j * size + i)] = std::ldexp(1.0, l);
+  const auto pixels = static_cast<std::uint32_t>(size);
+  const std::uint32_t side = pixels >> static_cast<unsigned>(l);
+  for (std::uint32_t j = f.square.row * side; j < (f.square.row + 1) * side; ++j)
+    for (std::uint32_t i = f.square.column * side; i < (f.square.column + 1) * side; ++i)
+      image[std::size_t{j} * pixels + i] = std::ldexp(1.0, l);
   return image;
 }
 
@@ -49,8 +52,8 @@ struct Basis {
   explicit Basis(int pixels) : size(pixels) {
     functions.push_back({});
     for (int l = 0; (1 << l) < size; ++l)
-      for (int y = 0; y < (1 << l); ++y)
-        for (int x = 0; x < (1 << l); ++x)
+      for (std::uint32_t y = 0; y >> l == 0; ++y)
+        for (std::uint32_t x = 0; x >> l == 0; ++x)
           for (int m = 1; m <= 3; ++m)
             functions.push_back({{l, x, y}, m});
     for (const BasisFunction& f : functions)
@@ -94,12 +97,12 @@ inline double integral_of(const Image& a, const Image& b) {
 
 /// Average of an image over a square no smaller than a pixel.
 inline double average_of(const Image& image, const Square& s) {
-  const int size = side_of(image);
-  const int side = size >> s.level;
+  const auto size = static_cast<unsigned>(side_of(image));
+  const unsigned side = size >> static_cast<unsigned>(s.level);
   double sum = 0;
-  for (int y = s.y * side; y < (s.y + 1) * side; ++y)
-    for (int x = s.x * side; x < (s.x + 1) * side; ++x)
-      sum += image[static_cast<std::size_t>(y * size + x)];
+  for (unsigned y = s.row * side; y < (s.row + 1) * side; ++y)
+    for (unsigned x = s.column * side; x < (s.column + 1) * side; ++x)
+      sum += image[y * size + x];
   return sum / (static_cast<double>(side) * side);
 }
 
@@ -107,8 +110,8 @@ inline double average_of(const Image& image, const Square& s) {
 template <class Visit>
 void for_each_square(int levels, Visit visit) {
   for (int l = 0; l <= levels; ++l)
-    for (int y = 0; y < (1 << l); ++y)
-      for (int x = 0; x < (1 << l); ++x)
+    for (unsigned y = 0; y < (1U << l); ++y)
+      for (unsigned x = 0; x < (1U << l); ++x)
         visit(Square{l, x, y});
 }
 
@@ -161,8 +164,8 @@ CoefficientSet<T> sparse_set(int levels, int wavelets, unsigned seed, int type =
   for (int i = 0; i < wavelets; ++i) {
     const int l = static_cast<int>(generator() % static_cast<unsigned>(levels));
     const unsigned side = 1U << static_cast<unsigned>(l);
-    const Square s = {l, static_cast<int>(generator() % side),
-                      static_cast<int>(generator() % side)};
+    const auto column = static_cast<std::uint32_t>(generator() % side);
+    const Square s = {l, column, static_cast<std::uint32_t>(generator() % side)};
     const auto m = type > 0 ? static_cast<unsigned>(type - 1) : generator() % 3;
     result.details[s][m] = static_cast<T>(std::ldexp(uniform(generator), -l));
   }

@@ -8,18 +8,18 @@
 
 namespace haarlight {
 
-/// Who is to blame, which is what a program's exit code says.
+/// Error category; determines the exit code.
 enum class ErrorKind {
-  Input, ///< a file cannot be read, or what it holds is malformed
+  Input, ///< a file cannot be read, or its content is malformed
   Output ///< a result cannot be written
 };
 
 /// Thrown for I/O and malformed data only; a broken precondition is an assert.
-/// what() reads `path: byte N: message`, leaving out what is unknown.
+/// what() reads `path: byte N: message`, omitting unknown parts.
 class Error : public std::runtime_error {
 public:
   /// @param path    the file concerned, as the user named it; empty if none
-  /// @param message what is wrong, and what would be right
+  /// @param message the fault and its correction
   /// @param offset  byte offset of the trouble in the file, where one is known
   Error(ErrorKind kind, std::string path, const std::string& message,
         std::optional<std::uint64_t> offset = std::nullopt);

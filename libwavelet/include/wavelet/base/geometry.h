@@ -49,7 +49,7 @@ inline Vec3 mirror(const Vec3& w, const Vec3& n) { return 2.0F * n.dot(w) * n - 
 
 /// The reflection frame of the two map sets for one shading point: z = the mirror direction of
 /// `wo` about `n`, and the normal lies in the half plane x ≥ 0, y = 0, so that
-/// n = (sin θ_r, 0, cos θ_r) in it. At θ_r → 0 the roll is undefined and any frame about z serves.
+/// n = (sin θ_r, 0, cos θ_r) in it. At θ_r → 0 the roll is undefined and any frame about z will do.
 struct ReflectionFrame {
   Frame frame;
   float cos_theta_r = 1; ///< n·ω_r = n·ω_o

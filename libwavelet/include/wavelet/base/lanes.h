@@ -1,15 +1,29 @@
 #pragma once
-// Four floats side by side (one SSE register), and the few functions that let one template serve
-// both a float and four of them with bit-identical results.
+// Four floats in one vector, by GCC vector extensions, and the functions that let one template
+// serve a float and four of them with bit-identical results. With HAARLIGHT_CPU_CLONES on wide
+// loops (cpu_clones.h) this is how SIMD code is written here.
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace haarlight {
 
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+/// Vectors from and to memory of any alignment.
+template <class V, class T>
+V load_lanes(const T* from) {
+  V result;
+  std::memcpy(&result, from, sizeof result);
+  return result;
+}
+template <class V, class T>
+void store_lanes(T* to, const V& value) {
+  std::memcpy(to, &value, sizeof value);
+}
 
 inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
 inline Float4 select(Int4 condition, Float4 yes, Float4 no) { return condition ? yes : no; }
@@ -59,7 +73,7 @@ F larger(F a, F b) {
   return select(a > b, a, b);
 }
 #ifdef __SSE__
-/// What the compiler does not make of the template.
+/// g++ 12 does not compile the template to this instruction.
 inline Float4 larger(Float4 a, Float4 b) { return __builtin_ia32_maxps(a, b); }
 #endif
 template <class F>

@@ -10,8 +10,8 @@
 namespace haarlight {
 
 /// Bytes of a file, or of a pipe that is read to its end, as they were when they were read: changes
-/// to the file afterwards change nothing here, and a file that changes while it is read is refused.
-/// Memory is taken for the parts that are read only.
+/// to the file later have no effect, and a file that changes while it is read is rejected.
+/// Only parts that are read take memory.
 class InputFile {
 public:
   /// @param path of a regular file or a FIFO; "-" is standard input
@@ -77,7 +77,7 @@ std::string openable_path(const std::string& path);
 /// True for "-", "/dev/stdin" and the like, which have no folder of their own.
 bool names_descriptor(const std::string& path);
 
-/// 64-bit XXH3 of some bytes; what checksums and provenance hashes are made of.
+/// 64-bit XXH3 of some bytes, for checksums and provenance.
 std::uint64_t hash_bytes(std::span<const std::byte> bytes);
 
 /// The same as 16 hexadecimal digits.
@@ -86,5 +86,8 @@ std::string hash_text(std::span<const std::byte> bytes);
 /// The last component of a path, by which outputs name their sources: not by their folder. Standard
 /// input and other open descriptors have the names "standard input" and "pipe".
 std::string base_name(const std::string& path);
+
+/// hash_text() of all bytes of a file, read in pieces. @throws Error(Input) if it cannot be read
+std::string file_hash(const std::string& path);
 
 } // namespace haarlight

@@ -14,15 +14,14 @@ class TemporaryName;
 /// Stands for standard output where a path of an output is asked for.
 inline constexpr const char* standard_output = "-";
 
-/// A file that is written aside and given its name on commit(). Until then, and if anything goes
-/// wrong, a file already at the path stays as it was and nothing is left of the new one.
-/// The bytes are in a file without a name in the same folder; where the file system has no such
-/// files, in a temporary (see temporary_name.h). A symbolic link is written through: the file that
-/// it leads to is replaced and the link stays. For standard output the bytes are collected in
-/// memory.
+/// A file that gets its name on commit(). Until then, and after any error, a file already at the
+/// path stays unchanged and nothing of the new one remains. The bytes are in a file without a name
+/// in the same folder; where the file system has no such files, in a temporary (see
+/// temporary_name.h). A symbolic link is written through: the file that it leads to is replaced and
+/// the link stays. For standard output the bytes are collected in memory.
 class OutputFile {
 public:
-  /// Reads the finished file back; throws if it is not what it should be.
+  /// Reads the finished file back; throws if it is wrong.
   using Check = std::function<void(const std::string& temporary_path)>;
 
   /// @throws Error(Output) if the directory is missing or not writable, if `path` is a directory,

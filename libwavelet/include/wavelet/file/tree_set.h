@@ -1,5 +1,7 @@
 #pragma once
-// .haar files: sets of trees in one file. The format is specified in FORMAT.md.
+// .haar files: sets of trees in one file, specified in FORMAT.md. The mapped form is used in place;
+// the packed form is for transport: several times smaller, and unpacked to the mapped form byte for
+// byte.
 
 #include <wavelet/file/input_file.h>
 #include <wavelet/file/output_file.h>
@@ -11,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,13 +29,13 @@ enum class Check {
   WhenUsed    ///< a tree is read and checked when it is first asked for
 };
 
-/// A .haar file in its mapped form. Trees are used as they lie in a private copy of the file, so
-/// that nothing that happens to the file afterwards changes them.
+/// A .haar file in its mapped form. Trees are used in place in a private copy of the file, so
+/// that later changes to the file have no effect.
 class TreeSet {
 public:
   /// Reads the file and checks it: checksum and structure of a tree in one go.
   /// @throws Error(Input) naming the first broken rule of FORMAT.md and its byte offset; for a
-  ///         packed file, what unpacks it
+  ///         packed file, the command that unpacks it
   explicit TreeSet(const std::string& path, Check check = Check::Everything);
   explicit TreeSet(InputFile file, Check check = Check::Everything);
 
@@ -119,5 +122,55 @@ private:
   OutputFile& m_file;
   std::unique_ptr<SetLayout> m_layout;
 };
+
+enum class FileForm { Mapped, Packed };
+
+/// Which form of a .haar file this is by its first bytes; nothing if it is no .haar file.
+/// @throws Error(Input) if it cannot be read
+std::optional<FileForm> file_form(const InputFile& file);
+std::optional<FileForm> file_form(const std::string& path);
+
+/// Writes a set in its packed form, some blocks of trees at a time and from several threads. The
+/// bytes depend on the trees, the SetInfo and the version of libzstd alone. Memory: the index and
+/// some blocks of at most 4 MiB of trees, or of one tree.
+class PackedSetWriter : public TreeSink {
+public:
+  /// @param channels 3 or 1
+  PackedSetWriter(OutputFile& file, const SetInfo& info, int channels, CoefficientType type);
+  ~PackedSetWriter() override;
+
+  void add(Tree tree) override;
+  void finish() override;
+
+  /// After finish(): the header that the mapped form begins with.
+  std::span<const std::byte> mapped_header() const;
+
+private:
+  void close_block();
+  void flush();
+
+  OutputFile& m_file;
+  std::unique_ptr<SetLayout> m_layout;
+  std::uint64_t m_pending_bytes = 0;
+  std::vector<Tree> m_pending;
+  std::vector<std::vector<Tree>> m_blocks;
+  std::uint32_t m_block_count = 0;
+  std::uint64_t m_empty_nodes = 0;
+  std::vector<std::byte> m_text_frame;
+};
+
+/// Packs a mapped file. The caller commits `file`.
+/// @throws Error(Input) if the mapped file breaks a rule, or is laid out as no writer of version 1
+///         does (its text section, for example, names something twice)
+void pack(const std::string& mapped_path, OutputFile& file, const Progress& progress = {});
+
+/// Unpacks a packed file; every rule of FORMAT.md is checked on the way. The caller commits `file`.
+/// @throws Error(Input) naming the first broken rule and its byte offset in the packed file
+void unpack(const std::string& packed_path, OutputFile& file, const Progress& progress = {});
+
+/// Opens either form. A packed file is unpacked into memory.
+/// @throws as unpack() and TreeSet(), and Error(Input) if that takes more than available_memory()
+TreeSet open_tree_set(InputFile file, Check check = Check::Everything);
+TreeSet open_tree_set(const std::string& path, Check check = Check::Everything);
 
 } // namespace haarlight::wavelet

@@ -1,143 +1,155 @@
 #pragma once
-// Products of a light tree and a reflectance seen through a rotation, built on the fly.
+// Products of a light and a reflectance at one shading point after another, and their integrals
+// with visibilities.
 
 #include <wavelet/product/product_tree.h>
-#include <wavelet/product/square_visibility.h>
+#include <wavelet/square/square.h>
 #include <wavelet/tree/pyramid.h>
 
+#include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
 namespace haarlight::wavelet {
 
-/// A reflectance set's entry pair seen from a light's frame: what the product at one shading point
-/// needs.
+/// The reflectance at a shading point, as seen from the light's frame.
 struct RotatedReflectance {
   const Pyramid* pyramid = nullptr;
-  int entry0 = 0; ///< two neighbouring entries (θ_r) …
-  int entry1 = 0;
+  int theta_index0 = 0; ///< two neighbouring entries (θ_r) …
+  int theta_index1 = 0;
   float blend = 0;            ///< … and the weight of the second
   ReflectionFrame reflection; ///< the pyramid's local frame, in the light's axes
 };
 
 struct AdaptiveOptions {
-  /// Refine until the relative variance that is left, by estimate, is below this.
+  /// Refine until the estimated relative variance that is left is below this.
   float variance_bound = 0.03F;
   int max_leaves = 4096;
-  /// Relative variance, by estimate, that follow() may add by keeping a product as it is.
-  float drift_bound = 0.01F;
+  /// Estimated relative variance that build_or_reuse() may add by reusing a product.
+  float reuse_variance_bound = 0.01F;
 };
 
-/// What stands between a point and the light.
-class Occlusion {
+/// The visibility of one square.
+struct SquareView {
+  float seen = 1; ///< visible fraction in [0, 1], estimated; what lies below the horizon does not
+                  ///< count
+  std::uint64_t occluders = ~std::uint64_t{0}; ///< possible occluders, as bits with a meaning known
+                                               ///< to the SquareVisibility only; 0 = none
+};
+
+/// Visibility query for directions of the light at a shading point.
+class SquareVisibility {
 public:
-  virtual ~Occlusion() = default;
+  virtual ~SquareVisibility() = default;
 
-  /// Sets each of `out` to whether something is in the way of a direction in the light's frame; as
-  /// many as `directions`.
-  virtual void find(std::span<const Vec3> directions, std::span<std::uint8_t> hidden) const = 0;
+  /// Sets `views` to the visibility of as many squares of the light's frame, of level ≥ 3.
+  /// @param views on entry with the possible occluders of a square that contains each, or all bits
+  virtual void query_visibility(std::span<const Square> squares, std::span<SquareView> views) = 0;
 };
 
-namespace detail {
-
-/// What a leaf weighs.
-struct LeafShare {
-  float density = 0; ///< the product's average weight, whatever is in the way
-  float kept = 1;    ///< of it
-  bool tested = false;
+/// Which squares of a product are tested for visibility.
+enum class VisibilityTest {
+  Leaves, ///< leaves of weight, after refinement; for queries that cost as much as a ray. Weights
+          ///< are multiplied by the visible fraction, floored at 4 %
+  Squares ///< all squares, during refinement, which then resolves shadow boundaries; for cheap
+          ///< queries that return 0 only where nothing is visible. Weights are multiplied by the
+          ///< square root of the visible fraction, floored above zero
 };
-
-struct Quadrants;
-
-} // namespace detail
 
 /// Builds products adaptively from the root of the light tree: the reflectance's average over a
 /// square is looked up in its own frame at the same level (the domain map is equal-area, so levels
 /// match), and squares are split where weight times the reflectance's relative variance is large.
 /// Clarberg and Akenine-Möller 2008 ("Practical product importance sampling for direct
-/// illumination") do this with point evaluations; averages overlook no lobe. Reused from point to
-/// point, it allocates nothing.
+/// illumination") do this with point evaluations; averages overlook no lobe. Memory is reused from
+/// point to point. Visibility changes the density only, never to zero where something may be
+/// visible: the integral stays that of light and reflectance.
 class AdaptiveProduct {
 public:
   /// @param light a tree in the frame that reflections are given in; its arrays must outlive this
   explicit AdaptiveProduct(const TreeView& light);
+  ~AdaptiveProduct();
+  AdaptiveProduct(const AdaptiveProduct&) = delete;
+  AdaptiveProduct& operator=(const AdaptiveProduct&) = delete;
 
   /// The product at one shading point; valid until the next call.
-  /// @param occlusion if given, squares of weight whose centres are hidden from the point get
-  /// little of the density, never none; the product's integral stays that of light and reflectance
+  /// @param visibility nullptr for none
   const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
-                           const Occlusion* occlusion = nullptr);
+                           SquareVisibility* visibility = nullptr,
+                           VisibilityTest test = VisibilityTest::Leaves);
 
-  /// The same where squares get the density that what is seen of them is worth, but never none; the
-  /// product's integral stays that of light and reflectance. Much refined where shadows end.
-  const ProductTree& build(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
-                           SquareVisibility& visibility);
-
-  /// The first at a point close to that of the last product. That is kept as it is while little has
-  /// changed since it was built: its density is above 0 wherever this point's integrand is, but its
-  /// integral is another point's. Else it is built afresh.
-  const ProductTree& follow(const RotatedReflectance& reflectance, const AdaptiveOptions& options,
-                            const Occlusion* occlusion = nullptr);
+  /// As build() with VisibilityTest::Leaves, but reuses the last product if its shading point is so
+  /// close that this adds less than `reuse_variance_bound`, and if that was built or reused without
+  /// VisibilityTest::Squares. A reused product's density is above 0 wherever this point's integrand
+  /// is, but its integral is that of the point it was built for.
+  const ProductTree& build_or_reuse(const RotatedReflectance& reflectance,
+                                    const AdaptiveOptions& options,
+                                    SquareVisibility* visibility = nullptr);
 
 private:
-  void turn_to(const RotatedReflectance& reflectance, const AdaptiveOptions& options);
-  void start();
-  bool serves(const RotatedReflectance& reflectance, float drift_bound) const;
-  float drift_rate() const;
-  double drift_of(std::uint32_t slot) const;
-  float squared_shift(const ReflectionFrame& reflection) const;
-  void refine(const AdaptiveOptions& options);
-  const ProductTree& finish(const AdaptiveOptions& options, const Occlusion* occlusion);
-  void mask(const AdaptiveOptions& options, const Occlusion& occlusion);
-  bool hide(const Occlusion& occlusion);
-  void find_candidates();
-  void keep(std::uint32_t slot, float share);
-  void unmask();
-  void look(std::size_t first, std::span<detail::Quadrants> quadrants);
-  void find_lookouts(std::size_t first, std::span<const detail::Quadrants> quadrants);
-  void keep(std::uint32_t slot, float seen, detail::Quadrants& quadrants) const;
-  double excess_error(const AdaptiveOptions& options) const;
-  void split_above(float threshold);
-  void expand(std::size_t first_node, float threshold);
-  void see_light(std::size_t node, detail::Quadrants& quadrants);
-  void add_leaves(std::size_t node, const detail::Quadrants& quadrants, float threshold);
-  void set_leaf(std::uint32_t slot, const detail::Quadrants& quadrants, std::size_t q);
-  float threshold(double excess) const;
-  bool has_room() const { return m_product.leaf_count() + 3 <= m_limit; }
-  void split(std::uint32_t slot);
-  void new_node(std::int32_t slot, const SquarePlace& square);
+  class Builder;
+  std::unique_ptr<Builder> m_builder;
+};
 
-  std::size_t slot_count() const { return 4 * m_product.m_nodes.size(); }
-  bool is_leaf(std::uint32_t slot) const {
-    return m_product.m_nodes[slot / 4].child[slot & 3U] < 0;
-  }
-  SquarePlace square(std::uint32_t slot) const { return m_squares[slot / 4].quadrant(slot & 3U); }
-  float area(std::uint32_t slot) const {
-    return power_of_two(-2 * (m_squares[slot / 4].level + 1));
-  }
+/// A leaf of a product and of visibilities that some light reaches.
+struct MaskedLeaf {
+  Float4 visible_light = {}; ///< average over the square of light times masks, lanes R, G, B, *
+  Square square;
 
-  TreeView m_light;
-  std::vector<ProductLeaf> m_start; ///< of the nodes that are the same for every product
-  RotatedReflectance m_reflectance;
-  std::size_t m_limit = 0;
-  std::vector<SquarePlace> m_squares; ///< by node
-  std::vector<std::int32_t> m_parent_slots;
-  std::vector<float> m_errors; ///< by slot, or longer: what each leaf leaves of the variance, by
-                               ///< estimate; 0 where there is a node
-  std::vector<detail::LeafShare>
-      m_shares;          ///< by slot, or longer; of density 0 where there is a node
-  bool m_masked = false; ///< some leaf's share is not all of it
-  std::vector<std::uint32_t> m_candidates;  ///< slots of leaves to be tested
-  SquareVisibility* m_visibility = nullptr; ///< while a product is built by it
-  std::vector<std::uint64_t> m_occluders;   ///< by slot, of squares that were looked at
-  std::vector<SquarePlace> m_places;        ///< of candidates
-  std::vector<SquareView> m_views;
-  std::vector<Vec3> m_directions;
-  std::vector<std::uint8_t> m_hidden;
-  double m_weight = 0;
-  double m_error = 0;
-  double m_drift = 0; ///< of the leaves, see drift_rate()
-  ProductTree m_product;
+private:
+  friend class MaskedProduct;
+  Float4 m_light = {}; ///< average of the light alone
+  std::uint32_t m_node = no_node;
+  float m_scale = 1;              ///< product of the masks that are constant over the square
+  std::uint32_t m_first_mask = 0; ///< of those that are not
+  std::uint32_t m_mask_count = 0;
+};
+
+/// An adaptive product times any number of masks, such as the visibilities of objects: traverses
+/// the product's and the masks' trees together. Below a leaf, where the reflectance counts as
+/// constant, it continues through the light's and the masks' trees as far as two of them have
+/// detail: exact for all of these. Memory is reused from product to product.
+class MaskedProduct {
+public:
+  /// The leaves with reflectance and visible light; valid until the next call.
+  /// @param product of an AdaptiveProduct; must outlive the leaves, and so must the masks
+  /// @param masks   of a single channel
+  std::span<const MaskedLeaf> build(const ProductTree& product, std::span<const TreeView> masks);
+
+  /// Appends the quadrants of a leaf of this product that some light reaches.
+  /// @param leaf is copied: it may be one of `out`
+  void split(MaskedLeaf leaf, std::vector<MaskedLeaf>& out);
+
+private:
+  /// A mask that varies over a square.
+  struct Mask {
+    const TreeView* tree = nullptr;
+    std::uint32_t node = no_node;
+    float mean = 0;
+  };
+  /// Its quadrants.
+  struct MaskQuadrants {
+    const TreeView* tree = nullptr;
+    TreeQuadrants quadrants;
+  };
+  /// Masks from `first` on vary; `scale` is the product of the others.
+  struct Masks {
+    std::size_t first = 0;
+    float scale = 1;
+  };
+
+  void visit(std::int32_t child, Masks masks);
+  Float4 average_below(Float4 light, std::uint32_t node, Masks masks);
+  void add_leaf(MaskedLeaf leaf, Masks masks, std::vector<MaskedLeaf>& out);
+  void split_masks(Masks masks);
+  Masks masks_of_quadrant(unsigned q, std::size_t splits, float scale);
+
+  const ProductTree* m_product = nullptr;
+  const TreeView* m_light = nullptr;
+  std::vector<Mask> m_masks; ///< a stack, like the next
+  std::vector<MaskQuadrants> m_splits;
+  std::vector<MaskedLeaf> m_leaves;
+  std::vector<Mask> m_leaf_masks; ///< those that vary over leaves
 };
 
 } // namespace haarlight::wavelet

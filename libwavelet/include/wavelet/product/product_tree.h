@@ -1,11 +1,12 @@
 #pragma once
-// A product of functions as something to sample: a quadtree whose leaves are squares on which all
-// factors but one count as constant, so that below them the product has the detail of that one's
-// tree: mostly the light's.
+// A product of functions as a density to sample: a quadtree whose leaves are squares on which all
+// factors but one count as constant. Below a leaf the product has the detail of the tree of the
+// remaining factor, mostly the light.
 //
-// The density follows the luminance of the product, not the product of luminances: a leaf weighs
-// the colours of what is left by luminance weight times the constants.
+// The density follows the luminance of the product, not the product of luminances: a leaf weights
+// the colours of the remaining factor by luminance weight times the constants.
 
+#include <wavelet/square/square.h>
 #include <wavelet/tree/descent.h>
 #include <wavelet/tree/tree.h>
 
@@ -16,8 +17,8 @@
 
 namespace haarlight::wavelet {
 
-/// Four quadrants q = qx + 2 qy: the product's average weight over each, and what lies there: a
-/// node, or a leaf, whose slot is ~child. Slots number quadrants: 4 × node + q.
+/// Four quadrants q = qx + 2 qy: the product's average weight over each, and the node below it, or
+/// the leaf of slot ~child. Slots number quadrants: 4 × node + q.
 struct ProductNode {
   Float4 weights = {};
   std::int32_t child[4] = {-1, -1, -1, -1};
@@ -25,13 +26,12 @@ struct ProductNode {
 
 /// A square on which all factors but one count as constant.
 struct ProductLeaf {
-  Float4 light = {};            ///< average of the factor that is left, lanes R, G, B, *
-  Float4 reflectance = {};      ///< product of the others' averages, lanes R, G, B
-  Slope slope;                  ///< of the product beside what the factor that is left tells
-  std::uint32_t node = no_node; ///< in the tree of the factor that is left
-  std::uint16_t x = 0, y = 0;   ///< in squares of its level; adaptive products alone know these
-  std::uint8_t level = 0;       ///< likewise
-  std::uint8_t rest = 0;        ///< which factor is left
+  Float4 light = {};            ///< average of the remaining factor, lanes R, G, B, *
+  Float4 reflectance = {};      ///< product of the other factors' averages, lanes R, G, B
+  Slope slope;                  ///< of the product, beside the detail of the remaining factor
+  std::uint32_t node = no_node; ///< in the tree of the remaining factor
+  Square square;                ///< set by AdaptiveProduct only
+  std::uint8_t remaining = 0;   ///< index of the remaining factor
 };
 static_assert(sizeof(ProductLeaf) == 64);
 
@@ -41,7 +41,7 @@ public:
   /// ∫ L·B over the square, per channel; times 4π for solid angle.
   Rgb integral() const;
 
-  /// Nothing to sample: the product vanishes.
+  /// True if the product vanishes, so that there is nothing to sample.
   bool empty() const { return m_nodes.empty() || !(mean() > 0); }
 
   std::size_t leaf_count() const { return m_nodes.empty() ? 0 : 3 * m_nodes.size() + 1; }
@@ -54,8 +54,8 @@ public:
     return m_leaves.empty() ? leaf_at_slot(~child) : m_leaves[static_cast<std::uint32_t>(~child)];
   }
 
-  /// The tree that a leaf's node is of.
-  const TreeView& rest(std::uint32_t index) const { return m_rests[index].tree; }
+  /// The tree of a leaf's remaining factor.
+  const TreeView& remaining_tree(std::uint32_t index) const { return m_remaining[index].tree; }
 
   std::size_t bytes() const {
     const std::size_t slots = 4 * m_nodes.size() * m_slots.size();
@@ -67,7 +67,7 @@ public:
   /// @param u1,u2 in [0, 1); must not be empty()
   Descent sample(float u1, float u2) const;
 
-  /// sample() for many points at once, which hides what each waits for.
+  /// sample() for many points at once, which hides memory latency.
   /// @param points in [0, 1)², as many as out
   void sample(std::span<const Vec2> points, std::span<Descent> out) const;
 
@@ -78,23 +78,23 @@ private:
   friend class AdaptiveProduct;
   friend class SynchronousProduct;
 
-  /// A factor that may be left in leaves.
-  struct Rest {
+  /// A factor that may remain in leaves.
+  struct RemainingFactor {
     TreeView tree;
     Float4 floor = {}; ///< of the product of the others, in the density; lanes R, G, B, 0
     /// Of the others in the density: luminance, scaled so that it stays within float.
     Float4 weights = luminance_lanes;
   };
 
-  /// What a factor holds at the nodes' quadrants.
+  /// A factor's averages over the nodes' quadrants, and its nodes there.
   struct Slots {
     std::vector<Float4> means; ///< lanes R, G, B, *
-    std::vector<std::uint32_t> details;
+    std::vector<std::uint32_t> nodes;
   };
 
   ProductLeaf leaf_at_slot(std::int32_t slot) const;
 
-  /// Turns node weights, given at leaves, into averages all the way up.
+  /// Sets the weights of inner squares to the averages of their quadrants' weights.
   void sum_upwards(const std::vector<std::int32_t>& parent_slots);
 
   std::int32_t descend_nodes(Descent& d) const;
@@ -103,7 +103,7 @@ private:
     return m_nodes[static_cast<std::uint32_t>(slot) / 4].child[slot & 3];
   }
 
-  /// The weight of a node's quadrant, by 4 × node + quadrant. Vectors have no references to lanes.
+  /// The weight of a slot. There are no references to lanes of a vector.
   float& weight_at(std::int32_t slot) {
     auto* weights =
         reinterpret_cast<float*>(&m_nodes[static_cast<std::uint32_t>(slot) / 4].weights);
@@ -119,17 +119,16 @@ private:
   }
 
   TreeDensity density(const ProductLeaf& l) const {
-    const Rest& rest = m_rests[l.rest];
-    const Float4 weights = larger(l.reflectance, rest.floor) * rest.weights;
-    return {&rest.tree, l.node, lane_sum(l.light * weights), weights, l.slope};
+    const RemainingFactor& factor = m_remaining[l.remaining];
+    const Float4 weights = larger(l.reflectance, factor.floor) * factor.weights;
+    return {&factor.tree, l.node, lane_sum(l.light * weights), weights, l.slope};
   }
 
-  std::vector<Rest> m_rests;
+  std::vector<RemainingFactor> m_remaining;
   std::vector<ProductNode> m_nodes;
-  std::vector<ProductLeaf>
-      m_leaves;                  ///< by slot, or longer; empty if they are to be made of m_slots
-  std::vector<Slots> m_slots;    ///< by factor, then by slot
-  std::optional<Rgb> m_integral; ///< if it is known already
+  std::vector<ProductLeaf> m_leaves; ///< by slot, or longer; empty if they are made from m_slots
+  std::vector<Slots> m_slots;        ///< by factor, then by slot
+  std::optional<Rgb> m_integral;     ///< if known already
 };
 
 } // namespace haarlight::wavelet

@@ -1,9 +1,9 @@
 #pragma once
-// What a square of the map covers on the sphere: a circle around it, and the share of it on which a
-// smooth function is positive.
+// Bounding caps of squares on the sphere, and the fraction of a square on which a smooth function
+// is positive.
 
-#include <wavelet/product/factor.h>
 #include <wavelet/square/sphere_map.h>
+#include <wavelet/square/square.h>
 
 #include <array>
 
@@ -16,31 +16,31 @@ struct SquareCap {
   float sine = 0;              ///< … which is at most π/2 from level 1 on
 };
 
-SquareCap square_cap(const SquarePlace& square);
+SquareCap square_cap(const Square& square);
 
 /// Values of a function at 3 × 3 points of a square: its corners, its edges' middles, its centre;
 /// index 3 · row + column.
 using SquareValues = std::array<float, 9>;
 
-/// Whether the function is so near to linear over the square that positive_share() serves.
+/// Whether the function is close enough to linear over the square for positive_fraction().
 bool nearly_linear(const SquareValues& values);
 
-/// The share of the square on which the biquadratic through the values is positive: exact along
+/// The fraction of the square on which the biquadratic through the values is positive: exact along
 /// columns or rows, by Gauss quadrature across them.
-float positive_share(const SquareValues& values);
+float positive_fraction(const SquareValues& values);
 
 /// Directions of the 3 × 3 points of a square, in three batches of lanes; the last batch holds the
 /// centre alone, four times.
 struct SquareDirections {
   std::array<Float4, 3> x, y, z;
 };
-SquareDirections square_directions(const SquarePlace& square);
+SquareDirections square_directions(const Square& square);
 
-/// The share of a square on which a smooth function of direction is positive, which by equal area
-/// is the share of the solid angle: error below 1e-3 of a square, and mostly far below it.
+/// The fraction of a square on which a smooth function of direction is positive, which by equal
+/// area is the share of the solid angle: error below 1e-3 of a square, and mostly far below it.
 /// @param value Float4(Float4 x, Float4 y, Float4 z) of four unit directions
 template <class Value>
-float positive_share_of(const SquarePlace& square, const Value& value) {
+float positive_fraction_of(const Square& square, const Value& value) {
   constexpr std::int32_t coarsest = 5; ///< coarser ones may bend or hold a seam of the map
   constexpr std::int32_t finest = 14;
   const SquareDirections at = square_directions(square);
@@ -51,10 +51,10 @@ float positive_share_of(const SquarePlace& square, const Value& value) {
       values[4 * i + lane] = four[static_cast<int>(lane)];
   }
   if (square.level >= finest || (square.level >= coarsest && nearly_linear(values)))
-    return positive_share(values);
+    return positive_fraction(values);
   float sum = 0;
   for (unsigned q = 0; q < 4; ++q)
-    sum += positive_share_of(square.quadrant(q), value);
+    sum += positive_fraction_of(square.quadrant(q), value);
   return 0.25F * sum;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The symmetry of the square (D4): how a folded set's stored rows stand for all rolls.
+// The symmetry of the square (D4), by which the stored rows of a folded set represent all rolls.
 
 #include <wavelet/tree/map_set.h>
 
@@ -33,7 +33,7 @@ struct SquareSymmetry {
   }
 };
 
-/// The stored row that stands for a roll, and how.
+/// The stored row that represents a roll, and the symmetry to apply.
 struct StoredRoll {
   int row = 0;
   SquareSymmetry symmetry;

@@ -15,11 +15,11 @@ struct CompressOptions {
   ThresholdOptions threshold;
   CoefficientType coefficients = CoefficientType::Half;
   bool luminance = false; ///< store one channel, the luminance, in place of RGB
-  bool quantize = false;  ///< round what is kept, see <wavelet/transform/quantize.h>
-  bool packed = false; ///< compress_set(): write the packed form, see <wavelet/file/packed_set.h>
+  bool quantize = false;  ///< round the coefficients kept, see <wavelet/transform/threshold.h>
+  bool packed = false;    ///< compress_set(): write the packed form, see <wavelet/file/tree_set.h>
 };
 
-/// What compression did to a map or, summed, to a set.
+/// Statistics of the compression of a map or, summed, of a set.
 struct CompressReport {
   std::uint64_t total_coefficients = 0; ///< 4^levels − 1 per map; an RGB triple counts as one
   std::uint64_t kept_coefficients = 0;
@@ -44,7 +44,7 @@ Tree compress_map(const Map& map, const CompressOptions& options, CompressReport
 
 /// Compresses every map of a set, a few at a time and from several threads, into a .haar file. The
 /// file's bytes depend on the maps, the SetInfo and the options alone. The caller commits `file`.
-/// @throws Error(Output) if writing fails, and whatever the source throws
+/// @throws Error(Output) if writing fails, and exceptions of the source
 CompressReport compress_set(const MapSource& source, const CompressOptions& options,
                             OutputFile& file, const Progress& progress = {});
 

@@ -12,30 +12,24 @@
 // the average of child quadrant (qx, qy) is F(s) + Σ_m sign(m, qx, qy) d_m with sign(1) = 1 − 2qx,
 // sign(2) = 1 − 2qy, sign(3) = sign(1)·sign(2).
 
+#include <wavelet/square/square.h>
+
 #include <cstddef>
 
 namespace haarlight::wavelet {
 
 /// Transforms `channels` interleaved channels of a size × size image, row 0 first, in place, on the
-/// calling thread. Wider vectors and other processors give the same bits: those of lifting one
-/// 2 × 2 block after another, rows before columns. While it runs it needs room for 1/4096 of the
-/// image, and for 1/15 of a tile of 64 rows and at most 256 pixels a row.
+/// calling thread. The bits are those of lifting one 2 × 2 block after another, rows before
+/// columns, on every processor.
 /// @param image    size² · channels elements; need not be aligned beyond its type
 /// @param size     a power of two
-/// @param channels at least 1; planar colour is a batch of three images of one channel
+/// @param channels at least 1
 void haar_forward(float* image, int size, int channels);
 void haar_forward(double* image, int size, int channels);
 
 /// Exact inverse up to rounding.
 void haar_inverse(float* image, int size, int channels);
 void haar_inverse(double* image, int size, int channels);
-
-/// The same for `count` images that lie one after another without gaps, from several threads (see
-/// <wavelet/base/parallel.h>), each image on one.
-void haar_forward_batch(float* images, std::size_t count, int size, int channels);
-void haar_forward_batch(double* images, std::size_t count, int size, int channels);
-void haar_inverse_batch(float* images, std::size_t count, int size, int channels);
-void haar_inverse_batch(double* images, std::size_t count, int size, int channels);
 
 /// Index, in pixels, of coefficient m ∈ {1, 2, 3} of the square (level, x, y) after haar_forward().
 inline std::size_t coefficient_index(int size, int level, int x, int y, int m) {
@@ -44,6 +38,9 @@ inline std::size_t coefficient_index(int size, int level, int x, int y, int m) {
   const int row = 2 * k * y + ((m & 2) != 0 ? k : 0);
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(size) +
          static_cast<std::size_t>(column);
+}
+inline std::size_t coefficient_index(int size, const Square& s, int m) {
+  return coefficient_index(size, s.level, static_cast<int>(s.column), static_cast<int>(s.row), m);
 }
 
 } // namespace haarlight::wavelet

@@ -1,13 +1,16 @@
 #pragma once
-// How far two maps, or two sets of maps, lie apart.
+// Differences of two maps, or of two sets of maps.
 //
-// A is the reference, B what is judged. Integrals ∫∫ run over the unit square, so that they are
-// averages over pixels; colours count by luminance, |c|² = Σ w_i c_i², as thresholding counts them.
-// Everything is in the unit of the maps' pixels: a BRDF set whose pixels hold f_r·cos is compared
-// with the cosine.
+// A is the reference, B is compared with it. Integrals ∫∫ run over the unit square, so that they
+// are averages over pixels; colours count by luminance, |c|² = Σ w_i c_i², as thresholding counts
+// them. Everything is in the unit of the maps' pixels: a BRDF set whose pixels hold f_r·cos is
+// compared with the cosine.
 
+#include <wavelet/file/tree_set.h>
+#include <wavelet/square/symmetry.h>
 #include <wavelet/tree/map_set.h>
 
+#include <memory>
 #include <vector>
 
 namespace haarlight::wavelet {
@@ -21,7 +24,7 @@ struct LevelDifference {
   double relative_l2() const; ///< 0 of equal maps, infinite where A holds nothing
 };
 
-/// Of two maps; of two sets averages over the maps, and the largest of what is a maximum.
+/// Of two maps. Of two sets: averages over the maps; maxima over the maps for maxima.
 struct Difference {
   double squared_error = 0; ///< ∫∫ |B − A|²
   double energy = 0;        ///< ∫∫ |A|²
@@ -70,7 +73,30 @@ struct SetDifference {
 /// Compares map by map, a few at a time and from several threads; the result does not depend on
 /// their number.
 /// @param a,b sets of equal size, columns and rows
-/// @throws whatever the sources throw
+/// @throws exceptions of the sources
 SetDifference compare_sets(const MapSource& a, const MapSource& b, const Progress& progress = {});
+
+// Views that make two sets comparable: sets of maps in another form. A view makes a map when asked
+// for it and shares ownership of its source.
+
+using SharedMaps = std::shared_ptr<const MapSource>;
+
+/// A stored map seen through a symmetry: pixel p is the stored pixel at symmetry.to_stored(p).
+Map turned(const Map& stored, const SquareSymmetry& symmetry);
+
+/// The maps of a .haar file, reconstructed at their finest level.
+SharedMaps tree_maps(std::shared_ptr<const TreeSet> trees);
+
+/// Averages down to `size` pixels a side. @param size a power of two, at most the set's
+SharedMaps shrunk(SharedMaps maps, int size);
+
+/// All rolls of a folded set, one row each, in the order of <wavelet/square/symmetry.h>.
+SharedMaps unfolded(SharedMaps maps);
+
+/// One map, as a set of its own. Its info keeps the kind; rolls and fold are those of one map.
+SharedMaps one_map(SharedMaps maps, int column, int row);
+
+/// Luminance in all three channels.
+SharedMaps in_luminance(SharedMaps maps);
 
 } // namespace haarlight::wavelet

@@ -1,10 +1,9 @@
 #pragma once
-// Hierarchical sampling: a point of the square is led down quadrant by quadrant, each chosen in
-// proportion to its weight, so that well-spread input points stay well spread (Clarberg et al.
-// 2005, "Wavelet importance sampling").
+// Hierarchical sample warping: a point descends quadrant by quadrant, each chosen in proportion to
+// its weight, so that stratified input points stay stratified (Clarberg et al. 2005, "Wavelet
+// importance sampling").
 
 #include <wavelet/base/geometry.h>
-#include <wavelet/tree/slope.h>
 #include <wavelet/tree/tree.h>
 
 #include <algorithm>
@@ -13,7 +12,50 @@
 
 namespace haarlight::wavelet {
 
-/// A square on the way down, and what is left of the two random numbers there.
+/// 1 + x (s − ½) + y (t − ½) at (s, t) ∈ [0, 1]² of a square, |x| + |y| < 2: a linear function
+/// over its mean.
+struct Slope {
+  float x = 0;
+  float y = 0;
+
+  float at(float s, float t) const { return 1 + x * (s - 0.5F) + y * (t - 0.5F); }
+
+  /// Means over the quadrants q = qx + 2 qy.
+  Float4 quadrants() const {
+    const float a = 0.25F * x;
+    const float b = 0.25F * y;
+    return Float4{1 - a - b, 1 + a - b, 1 - a + b, 1 + a + b};
+  }
+
+  /// The same function over one quadrant. @param mean quadrants()[q]
+  Slope in_quadrant(float mean) const { return {0.5F * x / mean, 0.5F * y / mean}; }
+
+  /// Nearly constant: it changes by less than 1/64, a relative variance of 1/50000.
+  bool is_flat() const { return std::abs(x) + std::abs(y) < 1.0F / 64; }
+};
+
+namespace detail {
+
+inline constexpr float below_one = 0x1.fffffep-1F;
+
+/// Turns u, uniform in [0, 1), into s of density 1 + slope (s − ½).
+inline float warp_linearly(float u, float slope) {
+  const float start = 1 - 0.5F * slope;
+  const float root = std::sqrt(std::max(start * start + 2 * slope * u, 0.0F));
+  return std::min(2 * u / (start + root), below_one);
+}
+
+} // namespace detail
+
+/// Turns a uniform point of [0, 1)² into one of the slope's density. @return that density
+inline float warp(const Slope& slope, float& s, float& t) {
+  s = detail::warp_linearly(s, slope.x);
+  const float mean = 1 + slope.x * (s - 0.5F);
+  t = detail::warp_linearly(t, slope.y / mean);
+  return mean + slope.y * (t - 0.5F);
+}
+
+/// The state of a descent: a square, and the rescaled random numbers in it.
 struct Descent {
   float u1 = 0; ///< in [0, 1)
   float u2 = 0;
@@ -26,8 +68,8 @@ struct Descent {
 namespace detail {
 
 /// Chooses between two with weights `first` and `second`, not both 0; rescales u. Returns 1 for the
-/// second. Never chooses a weight of 0, however the product with u is rounded. Free of branches,
-/// which chance would mispredict half of the time.
+/// second. Never chooses a weight of 0, whatever the rounding. Branchless: a branch would be
+/// mispredicted half of the time.
 inline unsigned choose(float& u, float first, float second) {
   const float t = u * (first + second);
   const bool beyond = (t >= first) & (second > 0);
@@ -88,13 +130,13 @@ inline float density_scale(float mean) {
 
 } // namespace detail
 
-/// A tree, or what lies under one of its squares, as a density: luminance-like weights of colours.
+/// A tree, or its part under one square, as a density: weights of colours, such as luminance.
 struct TreeDensity {
   const TreeView* tree = nullptr;
   std::uint32_t node = no_node; ///< of the square, or no_node: uniform in it
   float mean = 0;               ///< weighted average over the square
   Float4 weights = luminance_lanes;
-  Slope slope = {}; ///< that the density has over the square beside what the tree tells
+  Slope slope = {}; ///< factor of the tree's density over the square
 
   /// Density over a whole tree, which must outlive it.
   static TreeDensity of(const TreeView& tree, Float4 weights = luminance_lanes) {
@@ -106,8 +148,8 @@ struct TreeDensity {
 
 namespace detail {
 
-/// Share of a square's average that each of its quadrants gets at least: thresholded trees go
-/// negative, and what they lost must stay reachable.
+/// Fraction of a square's average that each of its quadrants gets at least. Thresholded trees have
+/// negative averages where the function is positive, which must keep a density above 0.
 inline constexpr float quadrant_floor = 1.0F / 256;
 
 /// Weighted averages over the four quadrants of a node's square.
@@ -152,7 +194,7 @@ inline void follow_spread(const TreeDensity& density, float u, float v, Descent&
 
 } // namespace detail
 
-/// Leads a descent from a square to the end of its tree; d.pdf becomes the pdf per unit square.
+/// Continues a descent from a square to the end of its tree; d.pdf becomes the pdf per unit square.
 inline void descend_tree(TreeDensity density, Descent& d) {
   while (density.node != no_node)
     detail::step_down(density, d, [&](Float4 w) { return steer(d, w); });
@@ -166,7 +208,7 @@ inline void follow_tree(TreeDensity density, float u, float v, Descent& d) {
   detail::follow_spread(density, u, v, d);
 }
 
-/// descend_tree() for many at once: their steps alternate, so that none waits for memory alone.
+/// descend_tree() for many at once: their steps alternate, which hides memory latency.
 /// @param densities as many as descents; used up
 void descend_tree(std::span<TreeDensity> densities, std::span<Descent> descents);
 

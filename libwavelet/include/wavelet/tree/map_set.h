@@ -41,17 +41,19 @@ Map halved(const Map& map);
 enum class SetKind : std::uint32_t {
   Generic = 0, ///< any functions on the square
   Brdf = 1,    ///< f_r(ω_o, ω)·max(0, n·ω) (or f_r alone) in the reflection frame, sr⁻¹
-  Light = 2    ///< radiance by direction, in the probe's own unit
+  Light = 2,   ///< radiance by direction, in the probe's own unit
+  Transfer = 3 ///< by pixel of a film: the product of all factors but one
 };
 
-/// What of a set's rows is stored; the rest are permutations of pixels (the square's symmetry D4).
+/// The part of a set's rows that is stored; the others are permutations of its pixels (the square's
+/// symmetry D4).
 enum class Fold : std::uint32_t {
   None = 0,
   Rotations = 1, ///< rolls φ ∈ [0, π/2): roll φ + π/2 is the map turned by 90°
   Mirrors = 2 ///< rolls φ ∈ [0, π/4]: roll π/2 − φ is the map mirrored in the diagonal u = v
 };
 
-/// Everything that is known of a set besides its pixels.
+/// Metadata of a set.
 struct SetInfo {
   SetKind kind = SetKind::Generic;
   int size = 0;    ///< pixels along one side of a map, a power of two
@@ -84,8 +86,8 @@ public:
   /// @param row    0 ≤ row < info().rows
   virtual Map make(int column, int row) const = 0;
 
-  /// Integral of the same function over the sphere (dω), found from the source by other means than
-  /// its map; what conservation is reported against. Nothing if the source does not know.
+  /// Integral of the same function over the sphere (dω), integrated from the source rather
+  /// than from its map: the reference of conservation. Nothing if unknown.
   virtual std::optional<Rgb> integral(int /*column*/, int /*row*/) const { return std::nullopt; }
 };
 
@@ -103,7 +105,7 @@ class ConservationMeter {
 public:
   explicit ConservationMeter(const SetInfo& info);
   void add(int column, int row, const Map& map, const std::optional<Rgb>& truth);
-  /// Nothing if no truth was known.
+  /// Nothing if no reference integral was known.
   std::optional<Conservation> result() const;
 
 private:

@@ -20,7 +20,7 @@
 namespace haarlight::wavelet {
 
 /// Read-only and safe to share between threads once built. Values are rounded to 8 bits of
-/// mantissa: good for a sampling density, which is exact whatever it is, and for integrals to a few
+/// mantissa: sufficient for a sampling density, which need not be exact, and for integrals to a few
 /// 0.1 %.
 class Pyramid {
 public:
@@ -39,7 +39,7 @@ public:
   /// @param level 0 … levels(); @param u,v in [0, 1]
   Float4 lookup(int entry, int level, float u, float v) const;
 
-  /// Many points, each at a level of its own, and where they lie in the grids.
+  /// Points, each at its own level, and their positions in the grids.
   struct Places {
     static constexpr int capacity = 64;
     float u[capacity], v[capacity]; ///< in [0, 1]
@@ -53,11 +53,11 @@ public:
   /// @param level 0 …; beyond levels() it counts as levels()
   void set_level(Places& places, std::size_t i, int level) const;
 
-  /// Finds the first `count` places, of which levels and u, v are set.
+  /// Computes the positions of the first `count` points, whose levels and u, v are set.
   static void place(Places& places, int count);
 
   /// lookup() at a place in two entries: (1 − blend) · first + blend · second.
-  Float4 lookup(int entry0, int entry1, float blend, const Places& places, std::size_t i) const;
+  Float4 lookup(int first, int second, float blend, const Places& places, std::size_t i) const;
 
 private:
   static constexpr int tile_bits = 3;
@@ -144,13 +144,13 @@ inline void Pyramid::place(Places& p, int count) {
   }
 }
 
-inline Float4 Pyramid::lookup(int entry0, int entry1, float blend, const Places& p,
+inline Float4 Pyramid::lookup(int first, int second, float blend, const Places& p,
                               std::size_t i) const {
-  const std::uint32_t page0 = pages(entry0)[p.page[i]];
-  const std::uint32_t page1 = pages(entry1)[p.page[i]];
+  const std::uint32_t page0 = pages(first)[p.page[i]];
+  const std::uint32_t page1 = pages(second)[p.page[i]];
   if (((page0 | page1) & absent) != 0) {
-    const Float4 near = lookup_coarser(pages(entry0), p, i);
-    return near + (lookup_coarser(pages(entry1), p, i) - near) * blend;
+    const Float4 near = lookup_coarser(pages(first), p, i);
+    return near + (lookup_coarser(pages(second), p, i) - near) * blend;
   }
   const std::uint16_t* near = texels(page0, p.texel[i]);
   const std::uint16_t* far = texels(page1, p.texel[i]);

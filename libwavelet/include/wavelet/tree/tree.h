@@ -46,6 +46,21 @@ struct Details {
   }
 };
 
+/// Mean of a square, from the means of its quadrants q = 0 … 3. T: float or Float4.
+template <class T>
+T mean_of_quadrants(const T* means) {
+  return 0.25F * ((means[0] + means[1]) + (means[2] + means[3]));
+}
+
+/// The three differences d_m of a square, from the means of its quadrants; the inverse of
+/// Details::children(). T: float or Float4.
+template <class T>
+std::array<T, 3> differences_of_quadrants(const T* means) {
+  return {0.25F * ((means[0] + means[2]) - (means[1] + means[3])),
+          0.25F * ((means[0] + means[1]) - (means[2] + means[3])),
+          0.25F * ((means[0] + means[3]) - (means[1] + means[2]))};
+}
+
 namespace detail {
 
 /// Number of bits set in a value below 16; a population count is a function call on plain x86-64.
@@ -57,6 +72,12 @@ constexpr std::uint32_t bits_of_nibble(std::uint32_t nibble) {
 
 /// "No such node": the function is constant over the square.
 inline constexpr std::uint32_t no_node = 0xffffffffU;
+
+/// The quadrants of a square of a tree's function.
+struct TreeQuadrants {
+  std::array<Float4, 4> means; ///< lanes R, G, B, *
+  std::array<std::uint32_t, 4> nodes;
+};
 
 /// A tree somewhere in memory (usually in a mapped file); cheap to copy, owns nothing.
 struct TreeView {
@@ -107,6 +128,14 @@ struct TreeView {
 
   /// Differences of an existing node.
   Details details(std::uint32_t node) const;
+
+  /// Splits a square of a given average. @param node of the square; no_node where the function is
+  /// constant
+  TreeQuadrants split(std::uint32_t node, Float4 average) const {
+    if (node == no_node)
+      return {{average, average, average, average}, {no_node, no_node, no_node, no_node}};
+    return {details(node).children(average), children(node)};
+  }
 
   /// Average over the square (level, x, y), by descent from the root: O(level).
   /// @param level 0 … any; below the finest wavelets the function is constant

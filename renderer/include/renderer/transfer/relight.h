@@ -7,7 +7,7 @@
 #include <renderer/transfer/transfer.h>
 
 #include <probe/probe_maps.h>
-#include <wavelet/file/packed_set.h>
+#include <wavelet/file/tree_set.h>
 
 #include <memory>
 #include <span>
@@ -34,6 +34,10 @@ private:
   Eigen::Matrix3f m_placed; ///< from the light's frame to the world
   probe::RotatableMap m_level;
 };
+
+/// Whether a set is a transfer: by its kind or, in files of versions before 0.2.0, by its
+/// provenance.
+bool is_transfer(const wavelet::SetInfo& info);
 
 /// A transfer file, mapped or packed.
 class Transfer {

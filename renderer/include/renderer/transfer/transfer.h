@@ -71,10 +71,10 @@ private:
   const LoadedScene& m_scene;
   Variation m_variation;
   wavelet::ProjectionOptions m_options;
-  wavelet::ProjectionTerm m_light;
-  wavelet::Projection m_projection;
+  wavelet::ProjectionFactor m_light;
+  wavelet::ProductProjector m_projector;
   OccluderTrees m_occluders;
-  std::vector<wavelet::ProjectionTerm> m_terms;
+  std::vector<wavelet::ProjectionFactor> m_factors;
   wavelet::ProjectionReport m_report;
 };
 

@@ -1,6 +1,7 @@
-#include <wavelet/base/available_memory.h>
+#include <wavelet/base/memory.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -55,6 +56,15 @@ std::uint64_t address_space() {
 
 std::uint64_t available_memory() {
   return std::min({system_memory(), group_memory(), address_space()});
+}
+
+OutOfMemory::OutOfMemory(const std::string& purpose, std::uint64_t bytes) noexcept {
+  constexpr double mib = 1 << 20;
+  if (bytes == 0)
+    std::snprintf(m_text, sizeof m_text, "out of memory: for %s", purpose.c_str());
+  else
+    std::snprintf(m_text, sizeof m_text, "out of memory: %.3g MiB for %s",
+                  static_cast<double>(bytes) / mib, purpose.c_str());
 }
 
 } // namespace haarlight

@@ -1,4 +1,4 @@
-#include <wavelet/reference/product.h>
+#include <wavelet/reference/reference.h>
 
 #include <algorithm>
 #include <cassert>
@@ -26,11 +26,11 @@ T ParentSums<T>::operator()(const Square& s) {
     return found->second;
   T value = m_function->root;
   if (s.level > 0) {
-    const Square above = parent(s);
+    const Square above = s.parent();
     const auto d = m_function->at(above);
     T step = 0;
     for (int m = 1; m <= 3; ++m)
-      step += d[static_cast<std::size_t>(m - 1)] * static_cast<T>(sign(m, s.x & 1, s.y & 1));
+      step += d[static_cast<std::size_t>(m - 1)] * static_cast<T>(sign(m, s.index_in_parent()));
     value = (*this)(above) + scaled(step, above.level);
   }
   m_table.emplace(s, value);
@@ -47,7 +47,7 @@ ChildrenSums<T>::ChildrenSums(const CoefficientSet<T>& g, const CoefficientSet<T
     if (c == 0)
       continue;
     for (int l = s.level; l >= 0; --l)
-      m_table[ancestor(s, l)] += c;
+      m_table[s.ancestor(l)] += c;
   }
 }
 
@@ -61,9 +61,8 @@ T Product<T>::coefficient(const Square& s, int m) {
   const T c1 = scaled(g.at(s, m1) * h.at(s, m2) + g.at(s, m2) * h.at(s, m1), s.level);
   // Two identical wavelets at strictly finer levels.
   T finer = 0;
-  for (int qy = 0; qy < 2; ++qy)
-    for (int qx = 0; qx < 2; ++qx)
-      finer += static_cast<T>(sign(m, qx, qy)) * m_csum(child(s, qx, qy));
+  for (unsigned q = 0; q < 4; ++q)
+    finer += static_cast<T>(sign(m, q)) * m_csum(s.quadrant(q));
   const T c2 = scaled(finer, s.level);
   // One identical to this wavelet, the other at coarser levels.
   const T c3 = g.at(s, m) * m_psum_h(s) + h.at(s, m) * m_psum_g(s);
@@ -113,23 +112,6 @@ CoefficientSet<T> multiply(std::span<const CoefficientSet<T>> functions) {
   return result;
 }
 
-template <class T>
-T inner_product(const CoefficientSet<T>& f, const CoefficientSet<T>& g) {
-  const bool f_smaller = f.details.size() < g.details.size();
-  const CoefficientSet<T>& small = f_smaller ? f : g;
-  const CoefficientSet<T>& large = f_smaller ? g : f;
-  T result = f.root * g.root;
-  for (const auto& [s, d] : small.details)
-    result += dot(d, large.at(s));
-  return result;
-}
-
-template <class T>
-T factored_integral(std::span<const CoefficientSet<T>> functions, std::size_t k) {
-  assert(0 < k && k < functions.size());
-  return inner_product(multiply(functions.first(k)), multiply(functions.subspan(k)));
-}
-
 template class ParentSums<float>;
 template class ParentSums<double>;
 template class ChildrenSums<float>;
@@ -141,9 +123,5 @@ template CoefficientSet<double> multiply(const CoefficientSet<double>&,
                                          const CoefficientSet<double>&);
 template CoefficientSet<float> multiply(std::span<const CoefficientSet<float>>);
 template CoefficientSet<double> multiply(std::span<const CoefficientSet<double>>);
-template float inner_product(const CoefficientSet<float>&, const CoefficientSet<float>&);
-template double inner_product(const CoefficientSet<double>&, const CoefficientSet<double>&);
-template float factored_integral(std::span<const CoefficientSet<float>>, std::size_t);
-template double factored_integral(std::span<const CoefficientSet<double>>, std::size_t);
 
 } // namespace haarlight::wavelet::reference
