@@ -29,9 +29,7 @@ function(haarlight_library name)
   target_link_libraries(haarlight_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE}
                         $<BUILD_INTERFACE:haarlight_settings>)
   haarlight_precompile(haarlight_${name})
-  if(NOT name STREQUAL brdf)
-    haarlight_unity(haarlight_${name})
-  endif()
+  haarlight_unity(haarlight_${name})
   install(TARGETS haarlight_${name} EXPORT haarlightTargets FILE_SET HEADERS)
 endfunction()
 

@@ -3,8 +3,8 @@
 #include <support/report.h>
 #include <support/tool.h>
 
-#include <brdf/bilateral.h>
 #include <brdf/brdf_maps.h>
+#include <brdf/brdf_properties.h>
 #include <wavelet/base/memory.h>
 
 #include <array>
@@ -59,7 +59,7 @@ brdf::BrdfMapOptions map_options(const Options& o) {
     maps.fold = wavelet::Fold::Rotations;
   if (o.fold == FoldChoice::Mirrors)
     maps.fold = wavelet::Fold::Mirrors;
-  if (const auto problem = brdf::problem_of(maps))
+  if (const auto problem = brdf::validate(maps))
     throw tool::UsageError(*problem);
   return maps;
 }

@@ -1,7 +1,7 @@
 // brdfsynth: MERL-format files of analytic reflectance models.
 #include <support/tool.h>
 
-#include <brdf/directional_albedo.h>
+#include <brdf/brdf_properties.h>
 #include <brdf/tabulate.h>
 
 #include <algorithm>

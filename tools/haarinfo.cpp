@@ -4,7 +4,6 @@
 #include <support/arguments.h>
 #include <support/tool.h>
 
-#include <image/exposure.h>
 #include <image/image_exr.h>
 #include <image/png.h>
 
@@ -85,9 +84,8 @@ void write_image(const Options& options, const wavelet::TreeSet& set,
   const int level = options.level.value_or(single ? set.levels() : tool::atlas_level(set));
   if (!single && tool::atlas_side(set, level) > 16384)
     throw tool::UsageError("--level: the picture would be wider than 16384 pixels");
-  image::Picture picture = single
-                               ? tool::tree_picture(set.tree(trees[0].column, trees[0].row), level)
-                               : tool::atlas(set, level);
+  Image picture = single ? tool::tree_picture(set.tree(trees[0].column, trees[0].row), level)
+                         : tool::atlas(set, level);
   if (tool::has_extension(options.image, ".exr"))
     return image::write_exr(options.image, picture);
   image::brighten(picture, image::middle_grey_gain(picture));

@@ -247,8 +247,8 @@ std::string frame_path(const std::string& sheet, int frame) {
   return sheet.substr(0, sheet.size() - 4) + number;
 }
 
-image::Picture picture_of(const Film& film, const SweepOptions& options) {
-  image::Picture picture(film.width, film.height);
+Image picture_of(const Film& film, const SweepOptions& options) {
+  Image picture(film.width, film.height);
   picture.rgb = film.rgb;
   image::tone_map(picture, {options.exposure, image::ToneMap::Filmic});
   return picture;

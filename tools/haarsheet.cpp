@@ -43,14 +43,13 @@ void declare(tool::Tool& app, Options& options) {
   app.offer_json();
 }
 
-image::Picture read(const std::string& path) {
+Image read(const std::string& path) {
   return tool::has_extension(path, ".png") ? image::read_png(path) : image::read_exr(path);
 }
 
 /// Root mean square of the relative error over all channels and pixels; the error is relative to at
 /// least 1 % of the reference's mean.
-double relative_error(const image::Picture& picture, const image::Picture& reference,
-                      const std::string& path) {
+double relative_error(const Image& picture, const Image& reference, const std::string& path) {
   if (picture.width != reference.width || picture.height != reference.height)
     throw_input_error(path, "does not have the size of the reference, " +
                                 std::to_string(reference.width) + " x " +
@@ -74,7 +73,7 @@ int make_sheet(const tool::Tool& app, const Options& options) {
   if (!options.captions.empty() && options.captions.size() != options.paths.size())
     throw tool::UsageError("--caption: one option per picture is needed");
   const bool compare = !options.reference.empty();
-  const image::Picture reference = compare ? read(options.reference) : image::Picture();
+  const Image reference = compare ? read(options.reference) : Image();
   tool::Report report;
   std::vector<image::SheetEntry> entries;
   for (std::size_t i = 0; i < options.paths.size(); ++i) {

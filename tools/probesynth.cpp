@@ -62,7 +62,7 @@ std::vector<std::string> comments(const Options& o) {
   return lines;
 }
 
-tool::Report describe(const probe::Image& image, const std::string& path) {
+tool::Report describe(const Image& image, const std::string& path) {
   const probe::Probe light(image, probe::Mapping::Angular);
   float largest = 0;
   for (int y = 0; y < image.height; ++y)
@@ -78,7 +78,7 @@ tool::Report describe(const probe::Image& image, const std::string& path) {
 
 int draw(const tool::Tool& app, const Options& options) {
   const auto scene = probe::make_scene(options.kind, options.scene);
-  const probe::Image image = probe::draw_angular(*scene, options.size);
+  const Image image = probe::draw_angular(*scene, options.size);
   probe::write_rgbe(options.output, image, comments(options));
   app.print(describe(image, options.output));
   return tool::exit_ok;

@@ -1,8 +1,8 @@
 #pragma once
 // How stored sample values become linear Rec. 709 colours.
 
+#include "decoder.h"
 #include "file/colour_space.h"
-#include "picture.h"
 
 #include <functional>
 #include <optional>
@@ -15,7 +15,7 @@ using Curve = std::function<double(double)>;
 struct Encoding {
   std::array<Curve, 3> curves;           ///< of red, green and blue; grey uses the first
   std::optional<Eigen::Matrix3d> matrix; ///< to Rec. 709; nothing: the primaries are Rec. 709's
-  std::string note;                      ///< a sentence that says how values were interpreted
+  std::string note;                      ///< a sentence on the interpretation of values
 };
 
 /// The curve of IEC 61966-2-1 (sRGB).
@@ -27,12 +27,12 @@ Encoding linear_encoding(std::string note);
 /// A power law: linear = stored^exponent.
 Encoding power_encoding(double exponent, std::string note);
 
-/// What an ICC profile of type matrix/TRC (RGB) or TRC (grey) states (ICC.1:2010, annex F).
-/// @throws Refusal for every other profile
+/// The encoding of an ICC profile of type matrix/TRC (RGB) or TRC (grey) (ICC.1:2010, annex F).
+/// @throws DecodeError for every other profile
 Encoding icc_encoding(std::span<const std::byte> profile);
 
 /// Sets the matrix for some primaries.
-/// @throws Refusal if they are degenerate
+/// @throws DecodeError if they are degenerate
 void set_primaries(Encoding& encoding, const Chromaticities& primaries);
 
 enum class Alpha {

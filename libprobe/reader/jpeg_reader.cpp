@@ -1,7 +1,7 @@
 // JPEG files, by libjpeg.
 
+#include "decoder.h"
 #include "encoding.h"
-#include "picture.h"
 
 #include <csetjmp>
 #include <cstdio>
@@ -17,8 +17,8 @@ namespace {
 /// Pixels of one byte of Huffman-coded data at most: a block of 8x8 takes one bit or more.
 constexpr std::uint64_t huffman_ratio = 512;
 
-/// A file that is being read. libjpeg returns from an error by longjmp to `target`; what a jump
-/// passes has no destructors.
+/// A file that is being read. libjpeg returns from an error by longjmp to `target`; frames skipped
+/// by a jump have no destructors.
 class JpegFile {
 public:
   explicit JpegFile(std::span<const std::byte> bytes) : m_bytes(bytes) {
@@ -32,7 +32,7 @@ public:
   JpegFile(const JpegFile&) = delete;
   JpegFile& operator=(const JpegFile&) = delete;
 
-  /// @throws Refusal if libjpeg reports an error or damaged data, as the others do
+  /// @throws DecodeError if libjpeg reports an error or damaged data, as the others do
   void read_header() {
     if (setjmp(m_target) != 0)
       fail();
@@ -63,7 +63,7 @@ private:
   [[noreturn]] void fail() {
     char message[JMSG_LENGTH_MAX];
     m_errors.format_message(reinterpret_cast<j_common_ptr>(&info), message);
-    throw Refusal("cannot be decoded: libjpeg: " + std::string(message));
+    throw DecodeError("cannot be decoded: libjpeg: " + std::string(message));
   }
 
   [[noreturn]] static void on_error(j_common_ptr common) {
@@ -105,26 +105,26 @@ Encoding encoding_of(JpegFile& file) {
 
 } // namespace
 
-Picture read_jpeg(const Task& task) {
-  refuse_choice(task.choice);
+DecodedImage read_jpeg(const Task& task) {
+  reject_choice(task.choice);
   JpegFile file(task.bytes);
   file.read_header();
   const std::uint64_t width = file.info.image_width;
   const std::uint64_t height = file.info.image_height;
   check_pixels(width, height);
   if (file.info.arith_code != 0)
-    throw Refusal("is coded arithmetically, only Huffman codes are read");
+    throw DecodeError("is coded arithmetically, only Huffman codes are read");
   check_file_size(task, width * height, huffman_ratio);
   if (file.info.num_components != 1 && file.info.num_components != 3)
-    throw Refusal("has " + std::to_string(file.info.num_components) +
-                  " colour components, 1 (grey) or 3 are read");
+    throw DecodeError("has " + std::to_string(file.info.num_components) +
+                      " colour components, 1 (grey) or 3 are read");
   Encoding encoding = encoding_of(file);
   constexpr std::uint64_t coefficients_of_pixel = 3 * sizeof(JCOEF); // of progressive files
   allow_memory((coefficients_of_pixel + 2 * 12) * width * height);
   file.start();
   const int channels = file.info.output_components;
   RowConverter converter(std::move(encoding), {.samples = channels, .colours = channels});
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(width), static_cast<int>(height));
   std::vector<JSAMPLE> row(width * static_cast<std::size_t>(channels));
   for (int y = 0; y < picture.image.height; ++y) {

@@ -1,10 +1,9 @@
 // haarlight_read_image: decodes the image file on its standard input and writes the pixels to its
-// standard output (src/reader_protocol.h). Started by the library, not by users.
+// standard output (src/file/external_reader.h). Started by the library, not by users.
 
-#include "picture.h"
+#include "decoder.h"
 
-#include "file/picture_format.h"
-#include "file/reader_protocol.h"
+#include "file/image_formats.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -23,8 +22,7 @@
 namespace haarlight::probe::reader {
 namespace {
 
-/// Memory for what the size of the pixels does not account for: headers, tables of offsets,
-/// buffers.
+/// Memory besides the pixels: headers, tables of offsets, buffers.
 constexpr std::uint64_t working_memory = std::uint64_t{40} << 20;
 
 std::uint64_t virtual_memory() {
@@ -55,20 +53,20 @@ void confine(rlim_t cpu_seconds) {
 std::span<const std::byte> map_input() {
   struct stat status = {};
   if (::fstat(STDIN_FILENO, &status) != 0 || status.st_size < 1)
-    throw Refusal("cannot be read");
+    throw DecodeError("cannot be read");
   const auto size = static_cast<std::size_t>(status.st_size);
   void* address = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, STDIN_FILENO, 0);
   if (address == MAP_FAILED)
-    throw Refusal("cannot be mapped");
+    throw DecodeError("cannot be mapped");
   return {static_cast<const std::byte*>(address), size};
 }
 
-Picture read(const Task& task, std::string_view format) {
-  if (format == format_name(PictureFormat::OpenExr))
+DecodedImage read(const Task& task, std::string_view format) {
+  if (format == format_name(ImageFormat::OpenExr))
     return read_exr(task);
-  if (format == format_name(PictureFormat::Tiff))
+  if (format == format_name(ImageFormat::Tiff))
     return read_tiff(task);
-  if (format == format_name(PictureFormat::Png))
+  if (format == format_name(ImageFormat::Png))
     return read_png(task);
   return read_jpeg(task);
 }
@@ -94,7 +92,7 @@ void send_text(std::uint32_t failed, std::string text, int width = 0, int height
   send(text.data(), text.size());
 }
 
-void send(const Picture& picture) {
+void send(const DecodedImage& picture) {
   std::string notes;
   for (const std::string& note : picture.notes)
     notes += note + '\n';
@@ -121,8 +119,8 @@ int main(int argc, char** argv) {
     send(read(task, argv[1]));
   } catch (const std::bad_alloc&) {
     send_text(1, "cannot be decoded: it takes more memory than its size accounts for");
-  } catch (const Refusal& refusal) {
-    send_text(1, refusal.what());
+  } catch (const DecodeError& error) {
+    send_text(1, error.what());
   } catch (const std::exception& error) {
     send_text(1, "cannot be decoded: " + first_line(error.what()));
   }

@@ -1,7 +1,7 @@
 // PNG files, by libpng.
 
+#include "decoder.h"
 #include "encoding.h"
-#include "picture.h"
 
 #include <png.h>
 
@@ -19,8 +19,8 @@ constexpr int longest_side = 1 << 17;
 /// Raw bytes that deflate can pack into one.
 constexpr std::uint64_t deflate_ratio = 1032;
 
-/// A file that is being read. libpng returns from an error by longjmp to `target`; what a jump
-/// passes has no destructors.
+/// A file that is being read. libpng returns from an error by longjmp to `target`; frames skipped
+/// by a jump have no destructors.
 class PngFile {
 public:
   explicit PngFile(std::span<const std::byte> bytes) : m_bytes(bytes) {
@@ -35,7 +35,7 @@ public:
   PngFile(const PngFile&) = delete;
   PngFile& operator=(const PngFile&) = delete;
 
-  /// @throws Refusal if libpng reports an error
+  /// @throws DecodeError if libpng reports an error
   void read_header() {
     if (setjmp(m_target) != 0)
       fail();
@@ -60,14 +60,14 @@ public:
     ::png_read_end(png, info);
   }
 
-  /// What libpng ignored; empty if nothing.
+  /// The warning of libpng; empty if none.
   const std::string& warning() const { return m_warning; }
 
   png_structp png = nullptr;
   png_infop info = nullptr;
 
 private:
-  [[noreturn]] void fail() const { throw Refusal("cannot be decoded: libpng: " + m_error); }
+  [[noreturn]] void fail() const { throw DecodeError("cannot be decoded: libpng: " + m_error); }
 
   [[noreturn]] static void on_error(png_structp png, png_const_charp message) {
     auto* file = static_cast<PngFile*>(::png_get_error_ptr(png));
@@ -112,7 +112,7 @@ std::optional<Encoding> cicp_encoding(const PngFile& file) {
       return srgb_encoding("values were decoded as sRGB, as its cICP chunk states");
     if (is({1, 8, 0, 1}))
       return linear_encoding("values are linear, as its cICP chunk states");
-    throw Refusal("has a cICP chunk for another colour space than sRGB or linear Rec. 709");
+    throw DecodeError("has a cICP chunk for another colour space than sRGB or linear Rec. 709");
   }
   return std::nullopt;
 }
@@ -155,8 +155,8 @@ unsigned orientation_of(const PngFile& file) {
 
 } // namespace
 
-Picture read_png(const Task& task) {
-  refuse_choice(task.choice);
+DecodedImage read_png(const Task& task) {
+  reject_choice(task.choice);
   PngFile file(task.bytes);
   file.read_header();
   const std::uint64_t width = ::png_get_image_width(file.png, file.info);
@@ -177,7 +177,7 @@ Picture read_png(const Task& task) {
                             .colours = channels >= 3 ? 3 : 1,
                             .alpha = channels % 2 == 0 ? Alpha::Unassociated : Alpha::None};
   RowConverter converter(encoding_of(file), layout);
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(width), static_cast<int>(height));
   const bool wide = ::png_get_bit_depth(file.png, file.info) == 16;
   for (std::size_t y = 0; y < height; ++y) {

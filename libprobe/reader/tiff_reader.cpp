@@ -1,7 +1,7 @@
 // TIFF files, by libtiff.
 
+#include "decoder.h"
 #include "encoding.h"
-#include "picture.h"
 
 #include <OpenEXR/ImfRgba.h>
 
@@ -32,8 +32,8 @@ void on_error(const char* module, const char* format, va_list arguments) {
 }
 
 [[noreturn]] void refuse_damaged() {
-  throw Refusal("cannot be decoded: libtiff: " +
-                (tiff_error().empty() ? "the file is damaged" : tiff_error()));
+  throw DecodeError("cannot be decoded: libtiff: " +
+                    (tiff_error().empty() ? "the file is damaged" : tiff_error()));
 }
 
 /// A file in memory, in the form that TIFFClientOpen wants.
@@ -116,7 +116,7 @@ std::vector<unsigned> find_pages(TIFF* tiff) {
 
 void choose_page(TIFF* tiff, const ImageChoice& choice) {
   if (!choice.layer.empty())
-    throw Refusal("has no layers, its pages are chosen as parts");
+    throw DecodeError("has no layers, its pages are chosen as parts");
   const std::vector<unsigned> pages = find_pages(tiff);
   const std::string count = std::to_string(pages.size());
   unsigned page = pages.empty() ? 0 : pages.front();
@@ -125,16 +125,16 @@ void choose_page(TIFF* tiff, const ImageChoice& choice) {
     const auto parsed = std::from_chars(choice.part.data(), end, page);
     if (parsed.ec != std::errc{} || parsed.ptr != end ||
         std::find(pages.begin(), pages.end(), page) == pages.end())
-      throw Refusal("has no page '" + choice.part + "'; it has " + count +
-                    " images, counted from 0");
+      throw DecodeError("has no page '" + choice.part + "'; it has " + count +
+                        " images, counted from 0");
   } else if (pages.size() != 1) {
-    throw Refusal("has " + count + " pages that are images, choose one as its part");
+    throw DecodeError("has " + count + " pages that are images, choose one as its part");
   }
   if (::TIFFSetDirectory(tiff, static_cast<tdir_t>(page)) == 0)
     refuse_damaged();
 }
 
-/// Raw bytes that a byte of the file can stand for: runs of 127, LZW codes of 12 bits for strings
+/// Largest number of raw bytes per byte of the file: runs of 127, LZW codes of 12 bits for strings
 /// of up to 3837 bytes, the limit of deflate; 2^20 where there is no bound worth stating.
 std::uint64_t largest_ratio(std::uint16_t compression) {
   switch (compression) {
@@ -236,13 +236,13 @@ Encoding encoding_of(TIFF* tiff, const TiffHeader& h) {
   if (::TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &length, &profile) != 0) {
     Encoding encoding = icc_encoding({static_cast<const std::byte*>(profile), length});
     if (real && encoding.curves[0])
-      throw Refusal("has floating-point values and an ICC profile whose curve is not linear");
+      throw DecodeError("has floating-point values and an ICC profile whose curve is not linear");
     return encoding;
   }
   std::uint16_t* curves[3] = {};
   if (!real &&
       ::TIFFGetField(tiff, TIFFTAG_TRANSFERFUNCTION, &curves[0], &curves[1], &curves[2]) != 0)
-    throw Refusal("has a TransferFunction, which is not read; convert it to sRGB or float");
+    throw DecodeError("has a TransferFunction, which is not read; convert it to sRGB or float");
   Encoding encoding =
       real ? linear_encoding("")
       : h.bits == 8
@@ -258,7 +258,7 @@ SampleLayout layout_of(TIFF* tiff, const TiffHeader& h) {
                       .colours = h.photometric == PHOTOMETRIC_RGB ? 3 : 1,
                       .inverted = h.photometric == PHOTOMETRIC_MINISWHITE};
   if (h.samples < layout.colours)
-    throw Refusal("has " + std::to_string(h.samples) + " samples per pixel, RGB takes 3");
+    throw DecodeError("has " + std::to_string(h.samples) + " samples per pixel, RGB takes 3");
   std::uint16_t count = 0;
   std::uint16_t* types = nullptr;
   ::TIFFGetFieldDefaulted(tiff, TIFFTAG_EXTRASAMPLES, &count, &types);
@@ -289,10 +289,10 @@ void convert_rows(RowConverter& converter, const T* samples, const TiffHeader& h
 }
 
 /// Grey and RGB of whole bytes.
-Picture read_samples(TIFF* tiff, const TiffHeader& h) {
+DecodedImage read_samples(TIFF* tiff, const TiffHeader& h) {
   RowConverter converter(encoding_of(tiff, h), layout_of(tiff, h));
   const auto raw = ::TIFFIsTiled(tiff) != 0 ? read_tiles(tiff, h) : read_strips(tiff, h);
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(h.width), static_cast<int>(h.height));
   if (h.format == SAMPLEFORMAT_IEEEFP && h.bits != 32)
     convert_rows(converter, (h.bits == 16 ? floats_of<half>(raw) : floats_of<double>(raw)).data(),
@@ -311,7 +311,7 @@ Picture read_samples(TIFF* tiff, const TiffHeader& h) {
 
 /// LogLuv and LogL: CIE XYZ, or Y alone, as floats (G. Ward Larson, "LogLuv Encoding for
 /// Full-Gamut, High-Dynamic Range Images", 1998).
-Picture read_log(TIFF* tiff, TiffHeader h) {
+DecodedImage read_log(TIFF* tiff, TiffHeader h) {
   ::TIFFSetField(tiff, TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT);
   h.samples = h.photometric == PHOTOMETRIC_LOGLUV ? 3 : 1;
   h.bits = 32;
@@ -319,7 +319,7 @@ Picture read_log(TIFF* tiff, TiffHeader h) {
   h.planar = PLANARCONFIG_CONTIG;
   const auto raw = ::TIFFIsTiled(tiff) != 0 ? read_tiles(tiff, h) : read_strips(tiff, h);
   const std::vector<float> values = floats_of<float>(raw);
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(h.width), static_cast<int>(h.height));
   for (std::size_t i = 0; i < picture.image.rgb.size() / 3; ++i) {
     const float* v = values.data() + i * h.samples;
@@ -327,17 +327,17 @@ Picture read_log(TIFF* tiff, TiffHeader h) {
     if (h.samples == 1)
       rgb.setConstant(v[0]);
     else
-      rgb = rec709_from_xyz({v[0], v[1], v[2]}).cast<float>();
+      rgb = convert_colour(rec709_from_xyz(), {v[0], v[1], v[2]}).cast<float>();
   }
   picture.notes.emplace_back("CIE XYZ was converted to Rec. 709, without chromatic adaptation");
   return picture;
 }
 
 /// Palettes, YCbCr and grey below 8 bits, which libtiff itself makes 8-bit RGB.
-Picture read_display(TIFF* tiff, const TiffHeader& h) {
+DecodedImage read_display(TIFF* tiff, const TiffHeader& h) {
   char message[1024] = {};
   if (::TIFFRGBAImageOK(tiff, message) == 0)
-    throw Refusal("cannot be decoded: libtiff: " + std::string(message));
+    throw DecodeError("cannot be decoded: libtiff: " + std::string(message));
   std::vector<std::uint32_t> raster(std::size_t{h.width} * h.height);
   if (::TIFFReadRGBAImageOriented(tiff, h.width, h.height, raster.data(), h.orientation, 1) == 0)
     refuse_damaged();
@@ -347,7 +347,7 @@ Picture read_display(TIFF* tiff, const TiffHeader& h) {
   if (::TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &length, &profile) != 0)
     encoding = icc_encoding({static_cast<const std::byte*>(profile), length});
   RowConverter converter(std::move(encoding), {.samples = 3, .colours = 3});
-  Picture picture;
+  DecodedImage picture;
   picture.image = Image(static_cast<int>(h.width), static_cast<int>(h.height));
   std::vector<std::uint8_t> row(std::size_t{3} * h.width);
   for (std::uint32_t y = 0; y < h.height; ++y) {
@@ -376,7 +376,7 @@ bool has_plain_samples(const TiffHeader& h) {
          (h.bits == 8 || h.bits == 16 || h.bits == 32);
 }
 
-Picture decode(TIFF* tiff, const TiffHeader& h) {
+DecodedImage decode(TIFF* tiff, const TiffHeader& h) {
   if (h.photometric == PHOTOMETRIC_LOGLUV || h.photometric == PHOTOMETRIC_LOGL)
     return read_log(tiff, h);
   if (has_plain_samples(h))
@@ -386,7 +386,7 @@ Picture decode(TIFF* tiff, const TiffHeader& h) {
   if (h.format == SAMPLEFORMAT_UINT && h.bits <= 8 &&
       (small_grey || h.photometric == PHOTOMETRIC_PALETTE || h.photometric == PHOTOMETRIC_YCBCR))
     return read_display(tiff, h);
-  throw Refusal(
+  throw DecodeError(
       "has " + std::to_string(h.samples) + " samples of " + std::to_string(h.bits) +
       " bits (SampleFormat " + std::to_string(h.format) + ", Photometric " +
       std::to_string(h.photometric) +
@@ -395,7 +395,7 @@ Picture decode(TIFF* tiff, const TiffHeader& h) {
 
 } // namespace
 
-Picture read_tiff(const Task& task) {
+DecodedImage read_tiff(const Task& task) {
   ::TIFFSetErrorHandler(on_error);
   ::TIFFSetWarningHandler(nullptr);
   MemoryFile file{task.bytes};
@@ -412,7 +412,7 @@ Picture read_tiff(const Task& task) {
   check_file_size(task, pixels * header.samples * header.bits / 8,
                   largest_ratio(header.compression));
   allow_memory(2 * 12 * pixels + 4 * raw);
-  Picture picture = decode(tiff.get(), header);
+  DecodedImage picture = decode(tiff.get(), header);
   picture.image = upright(std::move(picture.image), header.orientation);
   return picture;
 }

@@ -3,7 +3,7 @@
 #include "timing.h"
 
 #include <brdf/brdf_maps.h>
-#include <brdf/directional_albedo.h>
+#include <brdf/brdf_properties.h>
 #include <brdf/tabulate.h>
 
 #include <wavelet/square/sphere_map.h>

@@ -22,8 +22,8 @@ struct Runs {
   std::vector<Pixels> luminances;  ///< of the pixels that hit an object
   Pixels variances;                ///< of those, of one run's mean: estimated within the runs
   double seconds = 0;              ///< CPU time of a picture: the least of the runs
-  image::Picture first;            ///< of the first seed
-  image::Picture mean;             ///< of all
+  Image first;                     ///< of the first seed
+  Image mean;                      ///< of all
   std::vector<std::size_t> pixels; ///< indices in the film of those that hit an object
 };
 
@@ -71,7 +71,7 @@ Pixels luminances_of(const Film& film, const std::vector<std::size_t>& pixels) {
   return result;
 }
 
-void add(const std::vector<float>& rgb, float share, image::Picture& mean) {
+void add(const std::vector<float>& rgb, float share, Image& mean) {
   for (std::size_t i = 0; i < rgb.size(); ++i)
     mean.rgb[i] += share * rgb[i];
 }
@@ -109,7 +109,7 @@ Runs Session::run(Points points, int spp, std::uint32_t seed, int count) const {
   options.points = points;
   options.spp = spp;
   const SceneDescription& scene = m_scene->description();
-  result.first = image::Picture(scene.width, scene.height);
+  result.first = Image(scene.width, scene.height);
   result.mean = result.first;
   for (int k = 0; k < count; ++k) {
     options.seed = seed + static_cast<std::uint32_t>(k);

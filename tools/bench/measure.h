@@ -5,7 +5,7 @@
 #include <bench/plan.h>
 #include <bench/results.h>
 
-#include <image/image.h>
+#include <wavelet/base/image.h>
 
 #include <functional>
 #include <string>
@@ -18,7 +18,7 @@ struct Exhibit {
   renderer::SamplerKind sampler = renderer::SamplerKind::Product;
   int spp = 0;
   double relmse = 0;
-  image::Picture picture;
+  Image picture;
 };
 
 struct PairResult {
@@ -27,7 +27,7 @@ struct PairResult {
   std::string scene;
   std::string light_note; ///< how the probe was read
   std::vector<Row> rows;
-  image::Picture reference;
+  Image reference;
   std::vector<bool> hit; ///< pixels that show an object
   std::vector<Exhibit> exhibits;
 };

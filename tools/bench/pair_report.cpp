@@ -2,8 +2,8 @@
 
 #include <html/page.h>
 
-#include <image/exposure.h>
 #include <image/false_colour.h>
+#include <image/png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +24,8 @@ struct Crop {
 
 constexpr int largest_shown_side = 128;
 
-image::Picture cropped(const image::Picture& picture, const Crop& crop) {
-  image::Picture result(crop.width, crop.height);
+Image cropped(const Image& picture, const Crop& crop) {
+  Image result(crop.width, crop.height);
   for (int y = 0; y < crop.height; ++y)
     for (int x = 0; x < crop.width; ++x)
       result.set(x, y, picture.at(crop.x + x, crop.y + y));
@@ -49,7 +49,7 @@ float floor_of(const PairResult& pair) {
   return static_cast<float>(0.01 * sum / std::max(1.0, count));
 }
 
-Crop crop_of(const image::Picture& picture) {
+Crop crop_of(const Image& picture) {
   const int width = std::min(largest_shown_side, picture.width);
   const int height = std::min(largest_shown_side, picture.height);
   return {(picture.width - width) / 2, (picture.height - height) / 2, width, height};
@@ -135,7 +135,7 @@ std::string samplers_table(const Plan& plan, const PairResult& pair, const std::
   return table({groups, head}, rows);
 }
 
-std::string figure(const PairResult& pair, const image::Picture& picture, bool errors,
+std::string figure(const PairResult& pair, const Image& picture, bool errors,
                    const std::string& caption) {
   const Crop crop = crop_of(pair.reference);
   const std::string size = "\" width=\"" + std::to_string(crop.width * 128 / crop.height) +
@@ -177,17 +177,17 @@ std::string sampler_html(const std::string& name) {
          (style.dashed ? " <span class=\"tag\">biased</span>" : "");
 }
 
-std::string picture_uri(const PairResult& pair, const image::Picture& picture) {
+std::string picture_uri(const PairResult& pair, const Image& picture) {
   const Crop crop = crop_of(pair.reference);
   const float gain = image::middle_grey_gain(cropped(pair.reference, crop));
   return png_uri(cropped(picture, crop),
                  {std::log2(static_cast<double>(gain)), image::ToneMap::Filmic});
 }
 
-std::string error_uri(const PairResult& pair, const image::Picture& picture) {
+std::string error_uri(const PairResult& pair, const Image& picture) {
   const Crop crop = crop_of(pair.reference);
   const float floor = floor_of(pair);
-  image::Picture map(crop.width, crop.height);
+  Image map(crop.width, crop.height);
   for (int y = 0; y < crop.height; ++y)
     for (int x = 0; x < crop.width; ++x) {
       const float expected = luminance(pair.reference.at(crop.x + x, crop.y + y));
@@ -202,7 +202,7 @@ std::string error_uri(const PairResult& pair, const image::Picture& picture) {
 }
 
 std::string legend_uri() {
-  image::Picture bar(201, 1);
+  Image bar(201, 1);
   for (int x = 0; x < bar.width; ++x)
     bar.set(x, 0, image::false_colour(static_cast<float>(x - 100) / 100));
   return png_uri(bar);

@@ -46,11 +46,11 @@ std::string sampler_html(const std::string& name);
 // Pictures as data URIs of PNG files. They show the centre of the film, at most 128 × 128 pixels.
 
 /// Tone-mapped with an exposure that fits the reference.
-std::string picture_uri(const PairResult& pair, const image::Picture& picture);
+std::string picture_uri(const PairResult& pair, const Image& picture);
 
 /// The relative error of luminance, (x − r)/sqrt(r² + ε), in false colours of the square root of
 /// its magnitude: black 0, yellow + 100 % or more, cyan − 100 % or less; white where no object is.
-std::string error_uri(const PairResult& pair, const image::Picture& picture);
+std::string error_uri(const PairResult& pair, const Image& picture);
 
 /// The colours of error_uri() from − 100 % to + 100 %, linear in the square root of the error.
 std::string legend_uri();

@@ -139,7 +139,7 @@ std::string base64(std::span<const std::byte> bytes) {
   return text;
 }
 
-std::string png_uri(const image::Picture& picture, const image::PngOptions& options) {
+std::string png_uri(const Image& picture, const image::PngOptions& options) {
   const std::string bytes = image::png_bytes(picture, options);
   return "data:image/png;base64," + base64(std::as_bytes(std::span(bytes)));
 }

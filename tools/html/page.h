@@ -46,7 +46,7 @@ std::string value_table(const std::vector<TableRow>& rows);
 std::string base64(std::span<const std::byte> bytes);
 
 /// A picture's PNG file as a data URI. @throws Error(Output)
-std::string png_uri(const image::Picture& picture, const image::PngOptions& options = {});
+std::string png_uri(const Image& picture, const image::PngOptions& options = {});
 
 /// A page. @param title plain text @param style CSS @param body HTML
 std::string document(const std::string& title, const std::string& style, const std::string& body);

@@ -1,7 +1,7 @@
 #pragma once
-// Many pictures on one sheet, each under a caption.
+// A sheet of images, each under a caption.
 
-#include <image/image.h>
+#include <wavelet/base/image.h>
 
 #include <string>
 #include <vector>
@@ -9,8 +9,8 @@
 namespace haarlight::image {
 
 struct SheetEntry {
-  Picture picture;
-  std::string caption; ///< ASCII; what the font lacks shows as a blank
+  Image picture;
+  std::string caption; ///< ASCII; characters that the font lacks appear as blanks
 };
 
 struct SheetOptions {
@@ -21,10 +21,10 @@ struct SheetOptions {
 
 /// Cells are as large as the largest picture; captions are cut to the cell's width.
 /// @param entries at least one
-Picture contact_sheet(const std::vector<SheetEntry>& entries, const SheetOptions& options = {});
+Image contact_sheet(const std::vector<SheetEntry>& entries, const SheetOptions& options = {});
 
 /// Draws one line of text in white, its upper left corner at (x, y); cut at `right` and at the
 /// picture's edges. A character takes 6 × 8 font pixels.
-void draw_text(Picture& picture, int x, int y, int right, int scale, const std::string& text);
+void draw_text(Image& picture, int x, int y, int right, int scale, const std::string& text);
 
 } // namespace haarlight::image

@@ -23,7 +23,7 @@ std::string figure_text(float value) {
 }
 
 /// A bar of all colours with their values, over the lowest rows of a picture.
-void draw_legend(Picture& picture, float largest) {
+void draw_legend(Image& picture, float largest) {
   const int top = picture.height - bar_height - figures_height;
   for (int x = 0; x < picture.width; ++x) {
     const float t = 2 * (static_cast<float>(x) + 0.5F) / static_cast<float>(picture.width) - 1;
@@ -62,12 +62,12 @@ Rgb false_colour(float t) {
   return t < 0 ? colour.reverse() : colour;
 }
 
-Picture false_colour_picture(const SignedField& field, int scale) {
+Image false_colour_picture(const SignedField& field, int scale) {
   float largest = 0;
   for (const float value : field.values)
     largest = std::max(largest, std::abs(value));
   const int side = scale * field.size;
-  Picture picture(side, side + bar_height + figures_height);
+  Image picture(side, side + bar_height + figures_height);
   for (int y = 0; y < side && largest > 0; ++y) {
     const auto row = static_cast<std::size_t>(y / scale) * static_cast<std::size_t>(field.size);
     for (int x = 0; x < side; ++x) {

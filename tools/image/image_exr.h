@@ -1,7 +1,8 @@
 #pragma once
 // Ordinary pictures as EXR: scanlines, named float channels, ZIP.
 
-#include <image/image.h>
+#include <wavelet/base/image.h>
+#include <wavelet/file/output_file.h>
 
 #include <string>
 #include <utility>
@@ -30,11 +31,14 @@ struct ExrImage {
 void write_exr(const std::string& path, const ExrImage& image);
 
 /// A picture as channels R, G, B. @throws Error(Output)
-void write_exr(const std::string& path, const Picture& picture);
+void write_exr(const std::string& path, const Image& picture);
+
+/// Commits an EXR file after reading back that it is complete. @throws Error(Output)
+void commit_exr(OutputFile& file);
 
 /// The display window of a single-part EXR image of scanlines or tiles, black outside of the data
 /// window: channels R, G, B, else those of the only layer that has all three, else Y.
 /// @throws Error(Input) for other images, and for damaged files before memory is allocated for them
-Picture read_exr(const std::string& path);
+Image read_exr(const std::string& path);
 
 } // namespace haarlight::image

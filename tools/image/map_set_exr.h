@@ -3,6 +3,8 @@
 // table and any map can be read alone. Float R, G, B, ZIP. Header attributes haarlight:* hold every
 // field of SetInfo.
 
+#include <image/image_exr.h>
+
 #include <wavelet/file/output_file.h>
 #include <wavelet/tree/map_set.h>
 
@@ -24,11 +26,8 @@ struct MapSetResult {
 MapSetResult write_map_set_exr(const wavelet::MapSource& source, OutputFile& file,
                                const wavelet::Progress& progress = {});
 
-/// Commits an EXR file after reading back that it is complete. @throws Error(Output)
-void commit_exr(OutputFile& file);
-
-/// The maps of such a file, read tile by tile from several threads. A plain square EXR image of R,
-/// G, B (or Y) channels and a power of two of pixels a side is taken as a set of one map of kind
+/// The maps of such a file, read tile by tile from several threads. An ordinary square EXR image of
+/// R, G, B (or Y) channels and a power of two of pixels a side is taken as a set of one map of kind
 /// Generic.
 class ExrMapSource : public wavelet::MapSource {
 public:

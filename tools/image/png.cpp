@@ -42,7 +42,7 @@ png_image description(int width, int height) {
   return image;
 }
 
-/// Frees what libpng holds for a picture that is being read.
+/// Frees libpng's state for an image that is being read.
 struct Cleaner {
   png_image& image;
   explicit Cleaner(png_image& owned) : image(owned) {}
@@ -52,7 +52,7 @@ struct Cleaner {
 };
 
 constexpr std::uint64_t most_pixels = std::uint64_t{1} << 28;
-constexpr std::uint64_t deflate_ratio = 1032; ///< most bytes per compressed byte (zlib)
+constexpr std::uint64_t png_deflate_ratio = 1032; ///< most bytes per compressed byte (zlib)
 
 /// Refuses pictures whose pixels the file cannot hold, before they are allocated.
 /// @param image of a file whose header libpng has read
@@ -65,14 +65,27 @@ void check_png_size(const InputFile& file, const png_image& image) {
   constexpr std::array<std::uint64_t, 7> channels = {1, 1, 3, 1, 2, 1, 4};
   const auto type = std::to_integer<std::size_t>(file.bytes()[25]);
   const std::uint64_t raw = image.height * ((width * bits * channels[type % 7] + 7) / 8);
-  if (raw / deflate_ratio > file.bytes().size())
+  if (raw / png_deflate_ratio > file.bytes().size())
     throw_input_error(file.path(), "is too short for its " + std::to_string(width) + " x " +
                                        std::to_string(image.height) + " pixels");
 }
 
 } // namespace
 
-void tone_map(Picture& picture, const PngOptions& options) {
+float middle_grey_gain(const Image& picture) {
+  double sum = 0;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
+    sum += std::max(0.0,
+                    static_cast<double>(luminance(Eigen::Map<const Rgb>(picture.rgb.data() + i))));
+  return sum > 0 ? static_cast<float>(0.06 * static_cast<double>(picture.rgb.size()) / sum) : 1.0F;
+}
+
+void brighten(Image& picture, float gain) {
+  for (float& value : picture.rgb)
+    value *= gain;
+}
+
+void tone_map(Image& picture, const PngOptions& options) {
   const auto gain = static_cast<float>(std::exp2(options.exposure));
   for (float& value : picture.rgb) {
     const float exposed = std::clamp(value * gain, 0.0F, 1e6F);
@@ -90,9 +103,9 @@ unsigned char srgb_code(float linear) {
 
 float srgb_value(unsigned char code) { return static_cast<float>(linear_of(code)); }
 
-std::string png_bytes(const Picture& picture, const PngOptions& options) {
+std::string png_bytes(const Image& picture, const PngOptions& options) {
   png_image image = description(picture.width, picture.height);
-  Picture toned = picture;
+  Image toned = picture;
   tone_map(toned, options);
   std::vector<unsigned char> codes(toned.rgb.size());
   std::transform(toned.rgb.begin(), toned.rgb.end(), codes.begin(), srgb_code);
@@ -104,14 +117,14 @@ std::string png_bytes(const Picture& picture, const PngOptions& options) {
   return encoded;
 }
 
-void write_png(const std::string& path, const Picture& picture, const PngOptions& options) {
+void write_png(const std::string& path, const Image& picture, const PngOptions& options) {
   OutputFile file(path);
   const std::string encoded = png_bytes(picture, options);
   file.write(encoded.data(), encoded.size());
   file.commit();
 }
 
-Picture read_png(const std::string& path) {
+Image read_png(const std::string& path) {
   const InputFile file(path);
   png_image image = description(0, 0);
   const Cleaner cleaner(image);
@@ -124,7 +137,7 @@ Picture read_png(const std::string& path) {
   if (png_image_finish_read(&image, &black, codes.data(), 0, nullptr) == 0 ||
       PNG_IMAGE_FAILED(image))
     throw_input_error(path, std::string("cannot be decoded: ") + image.message);
-  Picture picture(static_cast<int>(image.width), static_cast<int>(image.height));
+  Image picture(static_cast<int>(image.width), static_cast<int>(image.height));
   std::transform(codes.begin(), codes.end(), picture.rgb.begin(), srgb_value);
   return picture;
 }

@@ -3,7 +3,7 @@
 #include <html/page.h>
 #include <html/plot.h>
 
-#include <image/exposure.h>
+#include <image/png.h>
 
 #include <wavelet/file/input_file.h>
 #include <wavelet/file/provenance.h>
@@ -83,7 +83,7 @@ int picture_level(const wavelet::TreeSet& set, bool single, std::optional<int> l
   return std::min(level.value_or(set.levels()), static_cast<int>(std::log2(largest_side)));
 }
 
-std::string picture_html(image::Picture picture, const std::string& alternative) {
+std::string picture_html(Image picture, const std::string& alternative) {
   const std::string width = std::to_string(std::max(picture.width, 256));
   image::brighten(picture, image::middle_grey_gain(picture));
   return "<img class=\"wide\" width=\"" + width + "\" alt=\"" + alternative + "\" src=\"" +

@@ -96,7 +96,7 @@ void write_film_exr(const std::string& path, const RenderResult& result,
 }
 
 void write_film_png(const std::string& path, const Film& film, double exposure) {
-  image::Picture picture(film.width, film.height);
+  Image picture(film.width, film.height);
   picture.rgb = film.rgb;
   image::write_png(path, picture, {exposure, image::ToneMap::Filmic});
 }

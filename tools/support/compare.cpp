@@ -3,7 +3,6 @@
 #include <support/arguments.h>
 #include <support/tool.h>
 
-#include <image/exposure.h>
 #include <image/false_colour.h>
 #include <image/image_exr.h>
 #include <image/map_set_exr.h>
@@ -126,7 +125,6 @@ void reduce_colours(const OpenSet& grey, OpenSet& coloured, std::vector<std::str
   notes.push_back(grey.path + ": holds luminance only, which is what is compared");
 }
 
-using image::Picture;
 using wavelet::Map;
 
 constexpr int smallest_side = 320; ///< that the legend's figures need
@@ -165,25 +163,25 @@ image::SignedField signed_difference(const ComparedMaps& maps) {
 /// Pixels that a pixel of a map is shown as, along a side.
 int enlargement(int size) { return (smallest_side + size - 1) / size; }
 
-Picture enlarged(const Picture& picture) {
+Image enlarged(const Image& picture) {
   const int factor = enlargement(picture.width);
-  Picture large(factor * picture.width, factor * picture.height);
+  Image large(factor * picture.width, factor * picture.height);
   for (int y = 0; y < large.height; ++y)
     for (int x = 0; x < large.width; ++x)
       large.set(x, y, picture.at(x / factor, y / factor));
   return large;
 }
 
-Picture shown_map(Map map, int largest_side) {
+Image shown_map(Map map, int largest_side) {
   while (map.size > largest_side)
     map = wavelet::halved(map);
-  Picture picture;
+  Image picture;
   picture.width = picture.height = map.size;
   picture.rgb = std::move(map.rgb);
   return enlarged(picture);
 }
 
-Picture shown_difference(image::SignedField field, int largest_side) {
+Image shown_difference(image::SignedField field, int largest_side) {
   while (field.size > largest_side)
     field = image::halved(field);
   return image::false_colour_picture(field, enlargement(field.size));

@@ -209,9 +209,9 @@ std::vector<TreeFigures> measure_trees(const TreeSet& set, const std::vector<Map
   return figures;
 }
 
-image::Picture tree_picture(const wavelet::TreeView& tree, int level) {
+Image tree_picture(const wavelet::TreeView& tree, int level) {
   wavelet::Map map = tree.reconstruct(level);
-  image::Picture picture;
+  Image picture;
   picture.width = picture.height = map.size;
   picture.rgb = std::move(map.rgb);
   return picture;
@@ -229,11 +229,11 @@ int atlas_level(const TreeSet& set, std::int64_t largest_side) {
   return level;
 }
 
-image::Picture atlas(const TreeSet& set, int level) {
+Image atlas(const TreeSet& set, int level) {
   const Grid grid = grid_of(set);
   const int side = 1 << level;
   const std::vector<wavelet::MapPlace> trees = all_trees(set);
-  image::Picture picture(grid.columns * side, grid.rows * side);
+  Image picture(grid.columns * side, grid.rows * side);
   parallel_for(trees.size(), [&](std::size_t i) {
     const wavelet::Map map = set.tree(trees[i].column, trees[i].row).reconstruct(level);
     const int left = static_cast<int>(i) % grid.columns * side;

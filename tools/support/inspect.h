@@ -3,7 +3,7 @@
 
 #include <support/report.h>
 
-#include <image/image.h>
+#include <wavelet/base/image.h>
 
 #include <wavelet/file/tree_set.h>
 
@@ -52,12 +52,12 @@ void describe_figures(const std::vector<TreeFigures>& figures, int levels, bool 
                       Report& report);
 
 /// A tree reconstructed at a level: linear, possibly negative.
-image::Picture tree_picture(const wavelet::TreeView& tree, int level);
+Image tree_picture(const wavelet::TreeView& tree, int level);
 
 /// The finest level at which atlas() stays within `largest_side` pixels a side.
 int atlas_level(const wavelet::TreeSet& set, std::int64_t largest_side = 2048);
 /// All trees at a level: the table of the set, or, if it has one row, the row folded to a square.
-image::Picture atlas(const wavelet::TreeSet& set, int level);
+Image atlas(const wavelet::TreeSet& set, int level);
 /// Pixels along the atlas' longer side.
 std::int64_t atlas_side(const wavelet::TreeSet& set, int level);
 

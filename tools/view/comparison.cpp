@@ -66,7 +66,7 @@ std::vector<float> cpu_environment_frame(const SceneDescription& scene, int widt
 }
 
 std::vector<float> read_reference(const std::string& path, int width, int height) {
-  image::Picture reference = image::read_exr(path);
+  Image reference = image::read_exr(path);
   if (reference.width != width || reference.height != height)
     throw_input_error(path, "has " + std::to_string(reference.width) + "x" +
                                 std::to_string(reference.height) + " pixels; the frame has " +
@@ -97,7 +97,7 @@ double median_time(int repeat, const std::function<double()>& run) {
 DrawnFrame FrameTest::write(const std::string& path, int width, int height, double exposure) const {
   draw(level);
   DrawnFrame frame = drawer.read();
-  image::Picture picture(width, height);
+  Image picture(width, height);
   picture.rgb = frame.rgb;
   if (tool::has_extension(path, ".png"))
     image::write_png(path, picture, {exposure, image::ToneMap::Filmic});

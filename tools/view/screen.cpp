@@ -68,7 +68,7 @@ UserInput mouse_input() {
 }
 
 /// The back buffer as linear values of its 8-bit codes.
-image::Picture read_window(const Viewport& viewport) {
+Image read_window(const Viewport& viewport) {
   const auto width = static_cast<std::size_t>(viewport.width);
   const std::size_t row = 3 * width;
   std::vector<unsigned char> codes(row * static_cast<std::size_t>(viewport.height));
@@ -76,7 +76,7 @@ image::Picture read_window(const Viewport& viewport) {
   glReadBuffer(GL_BACK);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, viewport.width, viewport.height, GL_RGB, GL_UNSIGNED_BYTE, codes.data());
-  image::Picture picture(viewport.width, viewport.height);
+  Image picture(viewport.width, viewport.height);
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const std::size_t y = static_cast<std::size_t>(viewport.height) - 1 - i / row;
     picture.rgb[y * row + i % row] = image::srgb_value(codes[i]);
@@ -162,7 +162,7 @@ UserInput Screen::begin(double timeout) {
   return input;
 }
 
-void Screen::end(image::Picture* screenshot) {
+void Screen::end(Image* screenshot) {
   ImGui::Render();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

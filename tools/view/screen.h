@@ -1,8 +1,8 @@
 #pragma once
 // A window on the screen with OpenGL 3.3, Dear ImGui controls, mouse and keyboard.
 
-#include <image/image.h>
 #include <view/gl.h>
+#include <wavelet/base/image.h>
 
 #include <memory>
 #include <string>
@@ -39,7 +39,7 @@ public:
   UserInput begin(double timeout);
   /// Draws the controls and displays the frame.
   /// @param screenshot receives the frame as linear values of its 8-bit codes, if not null
-  void end(image::Picture* screenshot);
+  void end(Image* screenshot);
 
   /// The whole window, pixels.
   Viewport viewport() const;

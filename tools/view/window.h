@@ -1,8 +1,8 @@
 #pragma once
 // Interactive windows that show scenes or transfer.
 
-#include <image/image.h>
 #include <view/frame.h>
+#include <wavelet/base/image.h>
 
 #include <renderer/transfer/relight.h>
 
@@ -49,7 +49,7 @@ struct WindowReport {
   double accesses = 0;     ///< to textures, mean per pixel of the last left picture
   int reloads = 0;         ///< successful
   int failed_reloads = 0;
-  image::Picture screenshot; ///< if asked for
+  Image screenshot; ///< if asked for
 };
 
 /// Shows a window until the user closes it or the script ends.

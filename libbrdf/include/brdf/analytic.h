@@ -1,5 +1,6 @@
 #pragma once
-// Isotropic analytic reflectance models with the parameters their papers publish.
+// Isotropic analytic reflectance models with the parameters of their papers, and their importance
+// sampling.
 //
 // Every model gives f_r in sr⁻¹, without cosine, for unit vectors in the local frame (z = normal),
 // and 0 where wi or wo is not above the horizon. Colours are linear RGB. `diffuse` adds a
@@ -11,8 +12,8 @@
 
 namespace haarlight::brdf {
 
-/// What isotropic models depend on, in double. Cosines are of the angles from the normal; sin_h and
-/// cos_h of θ_h; cos_d = cos θ_d between half vector and either direction.
+/// The parameters of isotropic models, in double. Cosines are of the angles from the normal; sin_h
+/// and cos_h of θ_h; cos_d = cos θ_d between half vector and either direction.
 struct Angles {
   double cos_i = 1;
   double cos_o = 1;
@@ -75,5 +76,39 @@ Rgb evaluate(const AnalyticBrdf& model, const Angles& angles);
 
 /// f_r of two directions in the local frame, sr⁻¹.
 Rgb evaluate(const AnalyticBrdf& model, const Vec3& local_wi, const Vec3& local_wo);
+
+// Importance sampling of a model, by the routine published for it. A sample follows the diffuse
+// part (cosine-weighted) or the specular one, chosen with a fixed probability; the density is that
+// of the mixture. Specular parts:
+//   Ggx                half vectors from the visible normals (Heitz 2018)
+//   BlinnPhong         half vectors by (n + 1) / 2π cos^n θ_h (Pharr and Humphreys 2004, 15.5.1)
+//   Ward               half vectors by exp(−tan²θ_h / α²) / (π α² cos³θ_h) (Walter 2005, eqs. 6, 9)
+//   Lafortune          (n + 1) / 2π cos^n about (C_xy x_o, C_xy y_o, C_z z_o) (Lafortune et al.
+//                      1997)
+//   AshikhminShirley   half vectors by (n + 1) / 2π cos^n θ_h (Ashikhmin and Shirley 2000, eqs. 6,
+//                      8, 9)
+// A half vector h has dω_h = dω_i / (4 |ω_o·h|).
+
+/// Samples a model for one outgoing direction. Keeps a pointer to the model.
+class AnalyticSampling {
+public:
+  AnalyticSampling() = default;
+
+  /// @param local_wo unit, above the horizon but for rounding
+  AnalyticSampling(const AnalyticBrdf& model, const Vec3& local_wo);
+
+  /// The direction ω_i, a unit vector, for a point of [0, 1)². It may lie below the horizon, where
+  /// nothing is reflected.
+  Vec3 sample(const Vec2& u) const;
+
+  /// Density of sample() at a unit direction, sr⁻¹. Its integral over the whole sphere is one, and
+  /// it is positive wherever f_r is.
+  float pdf(const Vec3& local_wi) const;
+
+private:
+  const AnalyticBrdf* m_model = nullptr;
+  Vec3 m_wo = Vec3::UnitZ();
+  float m_diffuse_probability = 1; ///< that a sample is cosine-weighted
+};
 
 } // namespace haarlight::brdf

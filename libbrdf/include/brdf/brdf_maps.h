@@ -1,11 +1,11 @@
 #pragma once
-// A measured BRDF resampled into the set of maps that products are made of.
+// A measured BRDF resampled into a set of maps, the input of products.
 //
 // Frame of a map: z = the mirror direction ω_r; the normal is n = (sin θ_r cos φ, sin θ_r sin φ,
 // cos θ_r); ω_o is the mirror image of z about n. The pixel at local direction ω holds f_r(ω_o, ω)
 // · max(0, n·ω) in sr⁻¹ (or f_r alone), averaged over the pixel and over the entry's cell: column c
 // covers θ_r ∈ [c, c + 1)·(π/2)/theta and row r the rolls φ ∈ [r, r + 1)·2π/roll. With roll = 1 the
-// row is φ = 0 exactly: other rolls are turns of the frame, made when the set is used.
+// row is φ = 0 exactly: other rolls are rotations of the frame at run time.
 //
 // Pixels are sampled more finely where the table's bins of θ_h are finer, so that no lobe is
 // missed.
@@ -32,12 +32,12 @@ struct BrdfMapOptions {
   bool cosine = true;  ///< include max(0, n·ω)
 };
 
-/// What is wrong with the options, in words fit for a command line; nothing if they serve.
-std::optional<std::string> problem_of(const BrdfMapOptions& options);
+/// Checks options. @return what is wrong, as a message for users; nothing if they are valid
+std::optional<std::string> validate(const BrdfMapOptions& options);
 
 class BrdfMaps : public wavelet::MapSource {
 public:
-  /// @param options such that problem_of() has nothing to say
+  /// @param options that validate() accepts
   explicit BrdfMaps(MeasuredBrdf brdf, const BrdfMapOptions& options = {});
 
   const wavelet::SetInfo& info() const override { return m_info; }
@@ -46,7 +46,7 @@ public:
   wavelet::Map make(int column, int row) const override;
 
   /// The directional albedo (or ∫ f_r dω without the cosine) averaged over the cell of θ_r, by
-  /// quadrature over half vectors (see <brdf/directional_albedo.h>).
+  /// quadrature over half vectors (see <brdf/brdf_properties.h>).
   std::optional<Rgb> integral(int column, int row) const override;
 
 private:

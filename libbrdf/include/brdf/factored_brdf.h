@@ -1,30 +1,60 @@
 #pragma once
-// A reflectance as a sum of products of one-dimensional densities, to draw directions from:
-// Lawrence, Rusinkiewicz and Ramamoorthi 2004, "Efficient BRDF Importance Sampling Using a Factored
+// Importance sampling of a reflectance as a sum of products of one-dimensional densities: Lawrence,
+// Rusinkiewicz and Ramamoorthi 2004, "Efficient BRDF Importance Sampling Using a Factored
 // Representation".
 //
 // The matrix Y holds f_r(ω_o, ω_i) cos θ_i · 4 (ω_o·h), the density that half vectors h of a
-// sampled reflectance have, integrated over cells of h; rows are θ_o at φ_o = 0, which is all an
-// isotropic reflectance needs, columns cells of (θ_h, φ_h). It is factorised into F(θ_o) G(θ_h,
-// φ_h), J terms, and each G into u(θ_h) v(φ_h), K terms. A sample chooses one of the J·K terms by F
-// at its ω_o, then θ_h by u and φ_h by v, and mirrors ω_o about h.
+// sampled reflectance have, integrated over cells of h; rows are θ_o at φ_o = 0, which suffices for
+// isotropic reflectance, columns are cells of (θ_h, φ_h). It is factorised into F(θ_o) G(θ_h, φ_h),
+// J terms, and each G into u(θ_h) v(φ_h), K terms. A sample chooses one of the J·K terms by F at
+// its ω_o, then θ_h by u and φ_h by v, and mirrors ω_o about h.
 //
 // Local frame: z = the normal; ω_o lies in the half plane x ≥ 0, y = 0. Cells of θ_h divide
 // sqrt(sin(θ_h/2)) evenly, much like the bins of a MERL table; φ_h and −φ_h share a cell.
 //
-// Otherwise than in the paper, rows of Y are scaled to one, so that no view is neglected for being
-// dark; a small share of the samples follows the cosine, so that the density is positive wherever
-// the reflectance is; and it is that of what is drawn, exactly, whatever the factors leave out.
+// Unlike in the paper, rows of Y are normalised, so that dark views are fitted as well as bright
+// ones; a small fraction of the samples is cosine-weighted, so that the density is positive
+// wherever the reflectance is; and the density is exactly that of the samples, whatever the error
+// of the factorisation.
 
 #include <wavelet/base/geometry.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
 namespace haarlight::brdf {
+
+// Non-negative matrix factorisation (Lee and Seung 2000, "Algorithms for non-negative matrix
+// factorization").
+
+/// Row-major.
+struct Matrix {
+  std::size_t rows = 0;
+  std::size_t columns = 0;
+  std::vector<float> values;
+
+  Matrix() = default;
+  Matrix(std::size_t r, std::size_t c) : rows(r), columns(c), values(r * c) {}
+
+  std::span<float> row(std::size_t r) { return std::span(values).subspan(r * columns, columns); }
+  std::span<const float> row(std::size_t r) const {
+    return std::span(values).subspan(r * columns, columns);
+  }
+};
+
+/// Y ≈ F Gᵀ, nothing negative.
+struct NonnegativeFactors {
+  Matrix f; ///< rows of Y × terms; takes the scale
+  Matrix g; ///< columns of Y × terms, each of which sums to one (or is zero)
+};
+
+/// Multiplicative updates that reduce the divergence of F Gᵀ from Y (their eq. 5) and preserve the
+/// sums of Y's rows. Initial terms represent neighbouring rows.
+NonnegativeFactors factorise(const Matrix& y, std::size_t terms, int iterations);
 
 struct FactorOptions {
   int views = 32;      ///< cells of θ_o
@@ -39,8 +69,8 @@ class FactoredBrdf {
 public:
   static constexpr int max_terms = 16;
 
-  /// Share of the samples that follow the cosine.
-  static constexpr float cosine_share = 1.0F / 16;
+  /// Fraction of the samples that are cosine-weighted.
+  static constexpr float cosine_fraction = 1.0F / 16;
 
   /// Sets f_r · max(0, cos θ_i), in luminance, for directions ω_i and one ω_o. Called from several
   /// threads.
@@ -49,7 +79,7 @@ public:
 
   explicit FactoredBrdf(const Evaluate& evaluate, const FactorOptions& options = {});
 
-  /// The terms as seen from one direction.
+  /// The terms for one outgoing direction.
   struct View {
     Vec3 wo = Vec3::UnitZ();
     std::array<float, max_terms> weights{}; ///< probabilities of the terms
@@ -82,7 +112,7 @@ private:
     std::vector<float> cdf;           ///< by term, cells + 1 each
     std::vector<float> density;       ///< by cell, max_terms each: probability over measure
 
-    /// Chooses a cell of a term, and sets u to what is left of it there.
+    /// Chooses a cell of a term, and rescales u to [0, 1) within it.
     std::size_t choose(std::size_t term, float& u) const;
   };
 

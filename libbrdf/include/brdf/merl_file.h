@@ -3,13 +3,14 @@
 // model").
 //
 // Little-endian: int32[3] bins of θ_h, θ_d, φ_d; then three planes R, G, B of float64 values, index
-// φ_d + n_φ·(θ_d + 90·θ_h). A value is f_r / scale, in sr⁻¹, without cosine; it stands for the
+// φ_d + n_φ·(θ_d + 90·θ_h). A value is f_r / scale, in sr⁻¹, without cosine; it is the value at the
 // centre of its bin. Negative values mark invalid cells (a direction below the horizon). Bin k of
 // θ_h spans π/2·[(k/90)², ((k+1)/90)²]; θ_d has 90 equal bins of [0, π/2]; φ_d 180 of [0, π)
-// (reciprocity folds the rest) or 360 of [0, 2π). Very old files with linear θ_h look the same and
-// cannot be told apart.
+// (reciprocity folds the rest) or 360 of [0, 2π). Very old files with linear θ_h cannot be
+// distinguished.
 
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,17 @@ inline constexpr int merl_theta_d_bins = 90;
 inline constexpr int merl_phi_d_bins = 180;
 /// The variant without the reciprocity fold.
 inline constexpr int merl_unfolded_phi_d_bins = 360;
+
+/// Angles of bin centres, radians.
+inline double theta_h_centre(int bin) {
+  const double root = (bin + 0.5) / merl_theta_h_bins;
+  return root * root * (std::numbers::pi / 2);
+}
+inline double theta_d_centre(int bin) {
+  return (bin + 0.5) / merl_theta_d_bins * (std::numbers::pi / 2);
+}
+/// For either number of bins: both have one per degree.
+inline double phi_d_centre(int bin) { return (bin + 0.5) / merl_phi_d_bins * std::numbers::pi; }
 
 /// f_r of channel c in sr⁻¹ = raw value · merl_scale[c].
 inline constexpr double merl_scale[3] = {1.00 / 1500, 1.15 / 1500, 1.66 / 1500};

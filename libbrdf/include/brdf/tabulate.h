@@ -1,5 +1,5 @@
 #pragma once
-// MERL tables of analytic models, as a gonioreflectometer would have left them.
+// MERL tables of analytic models, with invalid cells where measurements have them.
 
 #include <brdf/analytic.h>
 #include <brdf/merl_file.h>

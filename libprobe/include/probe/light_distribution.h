@@ -1,5 +1,5 @@
 #pragma once
-// Importance sampling of a probe by itself: a pixel is drawn with probability proportional to its
+// Importance sampling of a probe: a pixel is drawn with probability proportional to its
 // luminance times its solid angle, a point in it uniformly in image coordinates.
 
 #include <probe/probe.h>
@@ -29,7 +29,7 @@ struct LightSample {
 /// Of a black probe all directions are equally likely.
 class LightDistribution {
 public:
-  /// Keeps nothing of the probe but its shape.
+  /// Keeps no reference to the probe.
   explicit LightDistribution(const Probe& probe);
 
   /// @param u uniform in [0, 1)²; its y picks the row, its x the column
@@ -48,7 +48,7 @@ public:
   /// Probability with which sample() draws a pixel; they add up to 1.
   double probability(int x, int y) const;
 
-  /// What sample() returns once it has drawn a pixel, for pixels drawn by other means.
+  /// sample() within given pixels, for pixels drawn by other means.
   void sample_in(std::span<const PixelPoint> points, std::span<LightSample> out) const;
 
   int width() const { return m_width; }
@@ -69,7 +69,7 @@ private:
     float area = 0; ///< in (u, v), that the pixel's probability is spread over
   };
   /// Cumulative distributions are integers up to `one`, so that the density is exactly that of the
-  /// sampling, however small a pixel's share.
+  /// sampling, however small a pixel's probability.
   static constexpr std::uint32_t one = std::uint32_t{1} << 31U;
   /// Parts of the rows' guide for each step. The columns' have a quarter for each, so as to stay in
   /// the cache, whose misses cost more than steps.

@@ -1,12 +1,12 @@
 #pragma once
 // A light probe: radiance by world direction, from a picture and its mapping.
 //
-// Only what the mapping covers counts. In round maps a pixel belongs to the probe if its centre
-// lies in the disk r ≤ 1; the slivers of the disk in pixels whose centre lies outside show the
-// nearest pixel that belongs. Captions and frames in the corners contribute nothing.
+// Only the area that the mapping covers is used. In round maps a pixel belongs to the probe if its
+// centre lies in the disk r ≤ 1; the slivers of the disk in pixels whose centre lies outside show
+// the nearest pixel that belongs. Captions and frames in the corners contribute nothing.
 
-#include <probe/image.h>
 #include <probe/mapping.h>
+#include <wavelet/base/image.h>
 
 #include <span>
 #include <string>
@@ -39,8 +39,8 @@ public:
   /// The same for many directions at once, whose pixels are then fetched side by side.
   void radiance(std::span<const Vec3> directions, std::span<Rgb> out) const;
 
-  /// Radiance of one pixel, −1 ≤ x ≤ width and −1 ≤ y ≤ height: one step over the edge shows what
-  /// lies beyond the seam. Black well outside a round map.
+  /// Radiance of one pixel, −1 ≤ x ≤ width and −1 ≤ y ≤ height: one step beyond an edge gives the
+  /// neighbour across the seam. Black well outside a round map.
   Rgb pixel(int x, int y) const { return Eigen::Map<const Rgb>(m_rgb.data() + offset(x, y)); }
 
   /// Whether a pixel lies in the picture and its centre in the map.
@@ -48,8 +48,8 @@ public:
     return x >= 0 && y >= 0 && x < m_width && y < m_height && in_map(m_mapping, centre(x, y));
   }
 
-  /// Mean luminance over a pixel as radiance() shows it, 0 ≤ x < width and 0 ≤ y < height: its own,
-  /// or with Bilinear that of the interpolation. Positive wherever radiance is.
+  /// Mean luminance over a pixel as radiance() returns it, 0 ≤ x < width and 0 ≤ y < height: its
+  /// own, or with Bilinear that of the interpolation. Positive wherever radiance is.
   double mean_luminance(int x, int y) const;
 
   /// Direction of a pixel's centre.

@@ -24,10 +24,10 @@ struct MapOptions {
 Frame light_frame(int i, int j, int orientations);
 
 /// The frame of a cell carried along the great circle to another axis: the least rotation that
-/// takes frame.n to `w`. Entries average over their cell in frames so made.
+/// takes frame.n to `w`. Maps are averaged over their cell in these frames.
 Frame carried_frame(const Frame& frame, const Vec3& w);
 
-/// Of a world-frame map a power of two, at least 3.2 × the probe's width so that few pixels lie
+/// For a world-frame map: a power of two, at least 3.2 × the probe's width so that few pixels lie
 /// across the edges of the probe's, within 512 and 2048; 128 for the maps of a table.
 int default_map_size(const Probe& probe, int orientations);
 
@@ -49,30 +49,31 @@ struct SourcePixel {
 
 /// A world map prepared for being rotated. Pixels far brighter than those around them are added by
 /// the exact area that they cover of each pixel of the rotated map; the others are sampled.
-struct WorldLevel {
+struct RotatableMap {
   int size = 0;
   float unit = 1;          ///< of the radiances below, so that their sums stay finite
   std::vector<float> rgbw; ///< with a border one pixel wide: radiance and 1, or 0 for peaks
   std::vector<SourcePixel> peaks;
 };
 
-/// A world map made ready to be rotated again and again.
-WorldLevel turning_level(const wavelet::Map& world);
+/// Prepares a world map for rotate_map().
+/// @param largest_size the map is averaged down to at most so many pixels along a side
+RotatableMap make_rotatable(const wavelet::Map& world, int largest_size = 1 << 30);
 
-/// A level in another frame: the pixel at direction ω is the average over its square of the level's
-/// map (nearest look-up) at frame.to_outer(ω), and never outside of the range of the level's
-/// values. Peaks are added by area. All else is sampled 2 × 2 times for each pixel of the level,
+/// The map in another frame: the pixel at direction ω is the average over its square of the
+/// source map (nearest look-up) at frame.to_outer(ω), and never outside the range of its
+/// values. Peaks are added by area. The rest is sampled 2 × 2 times for each pixel of the source,
 /// and from 8 × 8 times (128² pixels and more) to 32 × 32 times (32² and fewer) for each of the
 /// map.
 /// @param size pixels along a side, a power of two ≥ 4
-wavelet::Map turned_map(const WorldLevel& level, const Frame& frame, int size);
+wavelet::Map rotate_map(const RotatableMap& level, const Frame& frame, int size);
 
 /// The maps of a probe. make() is the world map, or the map of one cell of ω_r, averaged over the
 /// cell. The latter are made from the world map averaged down to about their resolution, so that
 /// memory stays at that and one map for each thread.
 class ProbeMaps : public wavelet::MapSource {
 public:
-  /// @param source what is known of the probe's origin, the first entries of the set's provenance
+  /// @param source origin of the probe, the first entries of the set's provenance
   /// @throws Error(Input) if the probe's integral is beyond float
   ProbeMaps(const Probe& probe, const MapOptions& options, const Provenance& source = {});
 
@@ -86,8 +87,8 @@ private:
   MapOptions m_options;
   Rgb m_integral;
   wavelet::SetInfo m_info;
-  wavelet::Map m_world; ///< for one orientation
-  WorldLevel m_level;   ///< for more
+  wavelet::Map m_world;  ///< for one orientation
+  RotatableMap m_source; ///< for more
 };
 
 } // namespace haarlight::probe

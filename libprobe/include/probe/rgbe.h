@@ -17,10 +17,9 @@
 // File Format" in Radiance's file format manual (doc/filefmts), and its reader (src/common/color.c,
 // header.c, resolu.c); GAMMA as in Walter's rgbe.c.
 
-#include <probe/image.h>
+#include <wavelet/base/image.h>
 
-#include <array>
-#include <cstdint>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,11 +44,5 @@ Image read_rgbe(std::span<const std::byte> bytes, const std::string& path);
 /// @throws Error(Output)
 void write_rgbe(const std::string& path, const Image& image,
                 const std::vector<std::string>& comments = {});
-
-/// The nearest RGBE value of a colour: mantissas are rounded, values of 2^127 and more held there.
-std::array<std::uint8_t, 4> encode_rgbe(const Rgb& colour);
-
-/// The colour of four bytes r, g, b, e.
-Rgb decode_rgbe(const std::array<std::uint8_t, 4>& pixel);
 
 } // namespace haarlight::probe

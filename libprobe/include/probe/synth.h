@@ -1,7 +1,7 @@
 #pragma once
-// Made-up probes: analytic radiance by direction, drawn as angular maps.
+// Synthetic probes: analytic radiance by direction, drawn as angular maps.
 
-#include <probe/image.h>
+#include <wavelet/base/image.h>
 
 #include <cstdint>
 #include <memory>
@@ -12,14 +12,14 @@ namespace haarlight::probe {
 enum class SceneKind {
   Studio, ///< softboxes of several sizes and colours before a dim gradient
   SunSky, ///< sun and sky of Preetham, Shirley and Smits 1999 over grey ground
-  Spheres ///< small bright lamps in the dark
+  Spheres ///< small bright spheres on a dark background
 };
 
 struct SceneOptions {
   double turbidity = 3;      ///< of the sky's haze, 2 (clear) to 10
   double sun_elevation = 35; ///< degrees above the horizon, 0 to 90
   double sun_azimuth = 30;   ///< degrees from forward (−z) towards the right (+x)
-  std::uint64_t seed = 1;    ///< varies what is left to chance in Studio and Spheres
+  std::uint64_t seed = 1;    ///< random seed of Studio and Spheres
 };
 
 /// Where radiance changes within a small angle, so that pixels there need many samples.
@@ -37,8 +37,8 @@ public:
   virtual std::vector<BrightSpot> spots() const { return {}; }
 };
 
-/// Radiances are of the order of 1, bright lamps 100 and the sun 10⁴ to 10⁵; for SunSky the unit is
-/// 20 kcd/m² of luminance.
+/// Radiances are of the order of 1, bright spheres 100 and the sun 10⁴ to 10⁵; for SunSky the unit
+/// is 20 kcd/m² of luminance.
 std::unique_ptr<Scene> make_scene(SceneKind kind, const SceneOptions& options = {});
 
 /// Draws a scene as an angular map: each pixel is the mean over its part of the disk r ≤ 1, by

@@ -58,13 +58,15 @@ Chromaticities aces_chromaticities() {
 
 Eigen::Vector3d icc_white() { return {0.9642, 1, 0.8249}; }
 
-Eigen::Array3d rec709_from_xyz(const Eigen::Array3d& v) {
-  Eigen::Array3d rgb;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto& row = xyz_to_rec709[c];
-    rgb[static_cast<Eigen::Index>(c)] = row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
-  }
-  return rgb;
+const Eigen::Matrix3d& rec709_from_xyz() {
+  static const Eigen::Matrix3d matrix{{3.2404542, -1.5371385, -0.4985314},
+                                      {-0.9692660, 1.8760108, 0.0415560},
+                                      {0.0556434, -0.2040259, 1.0572252}};
+  return matrix;
+}
+
+Eigen::Array3d convert_colour(const Eigen::Matrix3d& m, const Eigen::Array3d& v) {
+  return m.col(0).array() * v[0] + m.col(1).array() * v[1] + m.col(2).array() * v[2];
 }
 
 Eigen::Matrix3d rec709_from_adapted_xyz(const Eigen::Vector3d& white) {
@@ -81,12 +83,8 @@ std::optional<Eigen::Matrix3d> rec709_from_rgb(const Chromaticities& space) {
     return std::nullopt;
   if (same(space, rec709_chromaticities()))
     return Eigen::Matrix3d::Identity();
-  if (is_xyz(space)) {
-    Eigen::Matrix3d measured;
-    for (int c = 0; c < 3; ++c)
-      measured.col(c) = rec709_from_xyz(Eigen::Vector3d::Unit(c).array()).matrix();
-    return measured * *to_xyz;
-  }
+  if (is_xyz(space))
+    return rec709_from_xyz() * *to_xyz;
   return rec709_from_adapted_xyz(xyz_of(space.white)) * *to_xyz;
 }
 

@@ -3,18 +3,9 @@
 
 #include <Eigen/Core>
 
-#include <array>
 #include <optional>
 
 namespace haarlight::probe {
-
-/// A 3×3 matrix, row by row, that multiplies a colour as a column.
-using ColourMatrix = std::array<std::array<double, 3>, 3>;
-
-/// CIE XYZ to linear Rec. 709 RGB, white D65 (IEC 61966-2-1).
-inline constexpr ColourMatrix xyz_to_rec709 = {{{3.2404542, -1.5371385, -0.4985314},
-                                                {-0.9692660, 1.8760108, 0.0415560},
-                                                {0.0556434, -0.2040259, 1.0572252}}};
 
 /// CIE 1931 xy chromaticities of an RGB space.
 struct Chromaticities {
@@ -33,8 +24,13 @@ Chromaticities aces_chromaticities();
 /// CIE XYZ of the white of ICC's connection space (D50, ICC.1:2010).
 Eigen::Vector3d icc_white();
 
-/// CIE XYZ to Rec. 709 (IEC 61966-2-1), without chromatic adaptation.
-Eigen::Array3d rec709_from_xyz(const Eigen::Array3d& xyz);
+/// The matrix from CIE XYZ to linear Rec. 709 RGB, white D65 (IEC 61966-2-1), without chromatic
+/// adaptation.
+const Eigen::Matrix3d& rec709_from_xyz();
+
+/// A colour, as a column, multiplied by a matrix; each row is summed from left to right, so that
+/// the result does not depend on how Eigen vectorises.
+Eigen::Array3d convert_colour(const Eigen::Matrix3d& matrix, const Eigen::Array3d& colour);
 
 /// The matrix from linear RGB of other primaries to Rec. 709. The white of the space becomes D65
 /// by Bradford's chromatic adaptation, so that R = G = B stays grey. The exception is CIE XYZ

@@ -1,4 +1,4 @@
-#include "file/pfm_reader.h"
+#include "file/image_formats.h"
 
 #include <wavelet/base/error.h>
 

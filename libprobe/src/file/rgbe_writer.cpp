@@ -3,19 +3,22 @@
 #include <wavelet/file/output_file.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 
 namespace haarlight::probe {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
+using RgbePixel = std::array<std::uint8_t, 4>;
 
-void append(Bytes& out, const std::string& text) {
+void append_text(Bytes& out, const std::string& text) {
   out.insert(out.end(), text.begin(), text.end());
 }
 
-std::string header_text(const Image& image, const std::vector<std::string>& comments) {
+std::string rgbe_header_text(const Image& image, const std::vector<std::string>& comments) {
   std::string text = "#?RADIANCE\n";
   for (const auto& comment : comments) {
     assert(comment.find('\n') == std::string::npos);
@@ -54,7 +57,7 @@ void append_runs(Bytes& out, const Bytes& component) {
   }
 }
 
-void append_coded(Bytes& out, const std::vector<std::array<std::uint8_t, 4>>& line) {
+void append_run_lengths(Bytes& out, const std::vector<RgbePixel>& line) {
   out.insert(out.end(), {2, 2, static_cast<std::uint8_t>(line.size() >> 8U),
                          static_cast<std::uint8_t>(line.size() & 255U)});
   Bytes component(line.size());
@@ -65,21 +68,8 @@ void append_coded(Bytes& out, const std::vector<std::array<std::uint8_t, 4>>& li
   }
 }
 
-void append_scanline(Bytes& out, const Image& image, int y) {
-  std::vector<std::array<std::uint8_t, 4>> line(static_cast<std::size_t>(image.width));
-  for (int x = 0; x < image.width; ++x)
-    line[static_cast<std::size_t>(x)] = encode_rgbe(image.at(x, y));
-  if (image.width >= 8 && image.width <= 32767) {
-    append_coded(out, line);
-    return;
-  }
-  for (const auto& pixel : line)
-    out.insert(out.end(), pixel.begin(), pixel.end());
-}
-
-} // namespace
-
-std::array<std::uint8_t, 4> encode_rgbe(const Rgb& colour) {
+/// The nearest RGBE value of a colour: mantissas are rounded, values of 2^127 and more clamped.
+RgbePixel encode_rgbe(const Rgb& colour) {
   const float largest = colour.maxCoeff();
   if (!(largest > 1e-38F))
     return {0, 0, 0, 0};
@@ -91,7 +81,7 @@ std::array<std::uint8_t, 4> encode_rgbe(const Rgb& colour) {
   exponent = std::min(exponent, 127);
   if (exponent + 128 < 1)
     return {0, 0, 0, 0};
-  std::array<std::uint8_t, 4> pixel{};
+  RgbePixel pixel{};
   for (int c = 0; c < 3; ++c) {
     const double mantissa =
         std::nearbyint(std::ldexp(static_cast<double>(colour[c]), 8 - exponent));
@@ -102,11 +92,25 @@ std::array<std::uint8_t, 4> encode_rgbe(const Rgb& colour) {
   return pixel;
 }
 
+void append_scanline(Bytes& out, const Image& image, int y) {
+  std::vector<RgbePixel> line(static_cast<std::size_t>(image.width));
+  for (int x = 0; x < image.width; ++x)
+    line[static_cast<std::size_t>(x)] = encode_rgbe(image.at(x, y));
+  if (image.width >= 8 && image.width <= 32767) {
+    append_run_lengths(out, line);
+    return;
+  }
+  for (const auto& pixel : line)
+    out.insert(out.end(), pixel.begin(), pixel.end());
+}
+
+} // namespace
+
 void write_rgbe(const std::string& path, const Image& image,
                 const std::vector<std::string>& comments) {
   OutputFile file(path);
   Bytes out;
-  append(out, header_text(image, comments));
+  append_text(out, rgbe_header_text(image, comments));
   for (int y = 0; y < image.height; ++y)
     append_scanline(out, image, y);
   file.write(out.data(), out.size());

@@ -36,14 +36,14 @@ struct PictureShape {
   int height = 0;
 };
 
-/// The pixels (row · width + column) of a picture that show the world directions of the points.
+/// The pixels (row · width + column) of an image at the world directions of the points.
 void find_texels(const PictureShape& shape, const PointGrid& points, std::int32_t* texels);
 
 /// Where the directions of the points, local to a frame, fall in a world map of size × size pixels
 /// with a border of one, in pixels from the centre of the border's first.
 void find_places(const Frame& frame, int size, const PointRow& points, float* columns, float* rows);
 
-/// The same by four lanes at a time; what find_texels and find_places do where the CPU has no more.
+/// The same with four lanes; used by find_texels and find_places on CPUs without wider ones.
 namespace narrow {
 void find_texels(const PictureShape& shape, const PointGrid& points, std::int32_t* texels);
 void find_places(const Frame& frame, int size, const PointRow& points, float* columns, float* rows);

@@ -3,7 +3,6 @@
 #include "mapping/mapping_lanes.h"
 #include "mapping/point_kernels.h"
 #include "maps/area_sum.h"
-#include "maps/peaks.h"
 
 #include <wavelet/base/parallel.h>
 
@@ -27,12 +26,6 @@ constexpr int most_samples_along = 64;
 /// longer). Small probes are in any case, for which it takes less than 0.1 s.
 constexpr double coarse_pixel = 16;
 constexpr double small_probe = 65536;
-
-Float4 load(const float* values) {
-  Float4 result;
-  __builtin_memcpy(&result, values, sizeof result);
-  return result;
-}
 
 Vec3 pixel_centre(int x, int y, int size) {
   return wavelet::square_to_sphere(Vec2((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
@@ -118,8 +111,8 @@ private:
       Float4 even = {};
       Float4 odd = {};
       for (std::size_t k = i; k < i + 8; k += 2) {
-        even += load(m_pixels.data() + 4 * static_cast<std::size_t>(texels[k]));
-        odd += load(m_pixels.data() + 4 * static_cast<std::size_t>(texels[k + 1]));
+        even += load_pixel(m_pixels.data() + 4 * static_cast<std::size_t>(texels[k]));
+        odd += load_pixel(m_pixels.data() + 4 * static_cast<std::size_t>(texels[k + 1]));
       }
       sum += even + odd;
     }

@@ -79,7 +79,7 @@ void LightDistribution::make_guide(const std::uint32_t* cdf, int parts, std::uin
   }
 }
 
-/// The step of the cdf that u falls in: a few steps at most, on average, from where the guide says.
+/// The step of the cdf that u falls in: on average a few steps from the one in the guide.
 LightDistribution::Step LightDistribution::find(const std::uint32_t* cdf,
                                                 const std::uint32_t* guide, int parts, float u) {
   constexpr std::int64_t last = std::int64_t{one} - 1;
@@ -93,7 +93,7 @@ LightDistribution::Step LightDistribution::find(const std::uint32_t* cdf,
   return {static_cast<int>(step), width, std::min(fraction, 0x1.fffffep-1F)};
 }
 
-/// The place in a pixel that the two fractions stand for, and the area it is uniform in.
+/// The point of a pixel at the two fractions, and the area in which it is uniform.
 LightDistribution::Place LightDistribution::place_in_pixel(const Step& column,
                                                            const Step& row) const {
   if (is_round(m_mapping)) {
@@ -134,7 +134,7 @@ float LightDistribution::pixel_area(int x, int y, float u) const {
   return 0.25F * (a_to - a_from) * (b_to - b_from);
 }
 
-/// @param solid_angle what the pixel's probability is spread over, as seen from the point
+/// @param solid_angle over which the pixel's probability is spread, by the density at the point
 float LightDistribution::density(std::uint32_t row_width, std::uint32_t column_width,
                                  float solid_angle) {
   constexpr float unit = 1.0F / static_cast<float>(one);

@@ -143,7 +143,7 @@ void Probe::fill_border() {
   }
 }
 
-/// One border pixel: what lies beyond the edge of the map there.
+/// One border pixel: a copy of the neighbour across the edge of the map.
 void Probe::fill_seam(int x, int y) {
   int from_x = std::clamp(x, 0, m_width - 1);
   int from_y = std::clamp(y, 0, m_height - 1);

@@ -1,17 +1,10 @@
 #include <renderer/film/points.h>
 
 #include <wavelet/base/cpu_clones.h>
+#include <wavelet/base/hash.h>
 
 namespace haarlight::renderer {
 namespace {
-
-std::uint32_t finalise(std::uint32_t x) { // of Wellons' lowbias32
-  x ^= x >> 16U;
-  x *= 0x7feb352dU;
-  x ^= x >> 15U;
-  x *= 0x846ca68bU;
-  return x ^ (x >> 16U);
-}
 
 std::uint32_t reverse_bits(std::uint32_t x) {
   x = __builtin_bswap32(x);
@@ -47,7 +40,7 @@ float to_unit(std::uint32_t bits) {
 
 Vec2 random_point(std::uint32_t key, std::uint32_t index) {
   const std::uint32_t a = hash_words(key, index);
-  return {to_unit(a), to_unit(finalise(a + 0x9e3779b9U))};
+  return {to_unit(a), to_unit(hash_bits(a + 0x9e3779b9U))};
 }
 
 /// Bits of integers only, so that all CPUs agree; as vectors they take a third of the time.
@@ -68,7 +61,7 @@ HAARLIGHT_CPU_CLONES void fill_sobol(std::uint32_t key, std::uint32_t first, std
 } // namespace
 
 std::uint32_t hash_words(std::uint32_t a, std::uint32_t b) {
-  return finalise(finalise(a + 0x9e3779b9U) ^ (b * 0x85ebca6bU + 0xc2b2ae35U));
+  return hash_bits(hash_bits(a + 0x9e3779b9U) ^ (b * 0x85ebca6bU + 0xc2b2ae35U));
 }
 
 void fill_points(Points kind, std::uint32_t key, std::uint32_t first, std::span<Vec2> out) {

@@ -2,7 +2,7 @@
 
 #include "shapes/solid.h"
 
-#include <wavelet/base/trigonometry.h>
+#include <wavelet/base/sampling.h>
 
 #include <algorithm>
 #include <cmath>
@@ -102,14 +102,6 @@ Vec3 cone_direction(const Emitter& emitter, const Vec3& position, const Vec2& u)
   return frame.to_outer({across * cosine, across * sine, 1 - down}).normalized();
 }
 
-/// Uniform in the disk.
-Vec2 disk_point(const Vec2& u) {
-  float sine = 0;
-  float cosine = 1;
-  sine_cosine(2 * pi * u.y(), sine, cosine);
-  return std::sqrt(u.x()) * Vec2(cosine, sine);
-}
-
 /// A point on the faces visible from `position`, uniform in area.
 Vec3 area_point(const Emitter& emitter, const Vec3& position, Vec2 u) {
   const Vec3 sides = sides_towards(emitter, position);
@@ -120,7 +112,7 @@ Vec3 area_point(const Emitter& emitter, const Vec3& position, Vec2 u) {
     place -= areas[axis++];
   u.x() = std::clamp(place / areas[axis], 0.0F, 1.0F);
   const bool disk = emitter.solid.kind == SolidKind::Disk;
-  const Vec2 p = disk ? disk_point(u) : Vec2(2 * u - Vec2::Ones());
+  const Vec2 p = disk ? sample_disk(u) : Vec2(2 * u - Vec2::Ones());
   const Edges edges = edges_across(emitter, axis);
   const Vec3 center = emitter.solid.to_world.offset.cast<float>();
   return center + p.x() * edges.first + p.y() * edges.second +

@@ -5,7 +5,7 @@
 #include <renderer/material/material.h>
 #include <renderer/samplers/sampler.h>
 
-#include <brdf/analytic_sampling.h>
+#include <brdf/analytic.h>
 #include <wavelet/tree/descent.h>
 
 #include <span>

@@ -30,7 +30,7 @@ std::unique_ptr<SamplerFactory> simple_factory(Arguments... arguments) {
 /// The finest squares of a light without a probe, as an octahedral probe.
 inline probe::Probe tree_as_probe(const Light& light) {
   const wavelet::Map map = light.map(1 << light.tree().levels);
-  probe::Image image(map.size, map.size);
+  Image image(map.size, map.size);
   image.rgb = map.rgb;
   return {image, probe::Mapping::Octahedral};
 }

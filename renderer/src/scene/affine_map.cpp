@@ -1,8 +1,9 @@
 #include <renderer/scene/affine_map.h>
 
+#include <wavelet/base/elementary.h>
+
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 namespace haarlight::renderer {
 namespace {
@@ -18,35 +19,7 @@ bool moderate(const AffineMap& transform) {
   return small(transform.offset.x()) && small(transform.offset.y()) && small(transform.offset.z());
 }
 
-/// Taylor sums; |x| ≤ π/4 leaves a remainder below 1e-17.
-SineCosine sine_cosine_eighth(double x) {
-  const double z = x * x;
-  SineCosine result{0, 0};
-  for (int n = 17; n >= 1; n -= 2)
-    result.sine = 1 - result.sine * z / ((n + 1) * (n + 2));
-  for (int n = 16; n >= 0; n -= 2)
-    result.cosine = 1 - result.cosine * z / ((n + 1) * (n + 2));
-  result.sine *= x;
-  return result;
-}
-
 } // namespace
-
-SineCosine sine_cosine_degrees(double degrees) {
-  const double turn = std::fmod(degrees, 360.0); // exact
-  const double quarter = std::nearbyint(turn / 90.0);
-  const SineCosine rest = sine_cosine_eighth((turn - 90.0 * quarter) * (std::numbers::pi / 180.0));
-  switch (static_cast<int>(quarter) & 3) {
-  case 0:
-    return rest;
-  case 1:
-    return {rest.cosine, -rest.sine};
-  case 2:
-    return {-rest.sine, -rest.cosine};
-  default:
-    return {-rest.cosine, rest.sine};
-  }
-}
 
 bool AffineMap::usable() const { return moderate(*this) && moderate(inverse()); }
 

@@ -1,5 +1,7 @@
 #include <renderer/scene/camera.h>
 
+#include <wavelet/base/elementary.h>
+
 #include <cassert>
 
 namespace haarlight::renderer {

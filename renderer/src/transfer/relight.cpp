@@ -368,7 +368,7 @@ Eigen::Matrix3f rotation_of(const Eigen::Vector3d& yaw_pitch_roll) {
 
 RotatedLight::RotatedLight(const Light& light, int resolution)
     : m_resolution(resolution),
-      m_level(probe::turning_level(
+      m_level(probe::make_rotatable(
           light.map(std::max(std::min(4 * resolution, max_source_side), resolution)))) {
   for (int axis = 0; axis < 3; ++axis)
     m_placed.col(axis) = light.to_world(Vec3::Unit(axis));
@@ -376,7 +376,7 @@ RotatedLight::RotatedLight(const Light& light, int resolution)
 
 wavelet::Map RotatedLight::map(const Eigen::Matrix3f& turn) const {
   const Eigen::Matrix3f back = m_placed.transpose() * turn.transpose() * m_placed;
-  return probe::turned_map(m_level, {back.col(0), back.col(1), back.col(2)}, m_resolution);
+  return probe::rotate_map(m_level, {back.col(0), back.col(1), back.col(2)}, m_resolution);
 }
 
 std::unique_ptr<Relighter> make_relighter(const Transfer& transfer, const SceneDescription& scene,

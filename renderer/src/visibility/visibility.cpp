@@ -6,6 +6,7 @@
 #include <renderer/light/light.h>
 #include <renderer/shapes/shapes.h>
 
+#include <wavelet/base/elementary.h>
 #include <wavelet/product/region.h>
 #include <wavelet/square/square_cap.h>
 

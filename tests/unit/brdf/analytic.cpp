@@ -1,9 +1,7 @@
-#include "analytic/elementary.h"
 #include "brdf_test_support.h"
 
 #include <brdf/analytic.h>
-#include <brdf/bilateral.h>
-#include <brdf/directional_albedo.h>
+#include <brdf/brdf_properties.h>
 #include <brdf/tabulate.h>
 
 using namespace haarlight;
@@ -39,18 +37,6 @@ double albedo(const AnalyticBrdf& model, float cos_o) {
 }
 
 } // namespace
-
-TEST_CASE("elementary functions agree with the C library", "[analytic]") {
-  for (double x = -7.9; x < 7.9; x += 0.0137) {
-    REQUIRE(sine_cosine(x).sine == Approx(std::sin(x)).epsilon(0).margin(1e-14));
-    REQUIRE(sine_cosine(x).cosine == Approx(std::cos(x)).epsilon(0).margin(1e-14));
-    REQUIRE(exponential(80 * x) == Approx(std::exp(80 * x)).epsilon(1e-12).margin(1e-290));
-    REQUIRE(logarithm(std::exp(x)) == Approx(std::log(std::exp(x))).epsilon(1e-13).margin(1e-15));
-    REQUIRE(power(0.5 + 0.06 * x, 30) == Approx(std::pow(0.5 + 0.06 * x, 30)).epsilon(1e-12));
-  }
-  CHECK(exponential(-1000) == 0);
-  CHECK(power(0, 3) == 0);
-}
 
 TEST_CASE("analytic models are reciprocal, finite and not negative", "[analytic]") {
   std::mt19937 generator(1);

@@ -1,7 +1,7 @@
 #include "brdf_test_support.h"
 #include "chi_square.h"
 
-#include <brdf/analytic_sampling.h>
+#include <brdf/analytic.h>
 #include <wavelet/square/sphere_map.h>
 
 using namespace haarlight;

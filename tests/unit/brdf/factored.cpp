@@ -1,6 +1,6 @@
 #include "brdf_test_support.h"
 #include "chi_square.h"
-#include "factored/nonnegative_factors.h"
+#include "nonnegative_factors.h"
 
 #include <brdf/analytic.h>
 #include <brdf/factored_brdf.h>

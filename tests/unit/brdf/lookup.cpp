@@ -1,7 +1,6 @@
 #include "brdf_test_support.h"
 
-#include <brdf/bilateral.h>
-#include <brdf/half_difference.h>
+#include <brdf/brdf_properties.h>
 #include <brdf/measured_brdf.h>
 
 #include <numbers>

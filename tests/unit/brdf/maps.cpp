@@ -206,16 +206,16 @@ TEST_CASE("the set describes itself", "[maps]") {
 }
 
 TEST_CASE("map options that make no sense are told", "[maps]") {
-  CHECK_FALSE(problem_of(BrdfMapOptions()));
-  CHECK(problem_of(options(100, 64, 1)));
-  CHECK(problem_of(options(64, 0, 1)));
-  CHECK(problem_of(options(64, 64, 0)));
+  CHECK_FALSE(validate(BrdfMapOptions()));
+  CHECK(validate(options(100, 64, 1)));
+  CHECK(validate(options(64, 0, 1)));
+  CHECK(validate(options(64, 64, 0)));
   BrdfMapOptions wanted = options(64, 8, 6);
-  CHECK_FALSE(problem_of(wanted));
+  CHECK_FALSE(validate(wanted));
   wanted.fold = Fold::Rotations;
-  CHECK(problem_of(wanted));
+  CHECK(validate(wanted));
   wanted.roll = 12;
-  CHECK_FALSE(problem_of(wanted));
+  CHECK_FALSE(validate(wanted));
   wanted.fold = Fold::Mirrors;
-  CHECK(problem_of(wanted));
+  CHECK(validate(wanted));
 }

@@ -1,9 +1,8 @@
 // The real measurements, where they are present: see data/README.md of the shared folder.
 #include "brdf_test_support.h"
 
-#include <brdf/bilateral.h>
 #include <brdf/brdf_maps.h>
-#include <brdf/directional_albedo.h>
+#include <brdf/brdf_properties.h>
 #include <brdf/tabulate.h>
 
 #include <map>

@@ -256,7 +256,7 @@ TEST_CASE("The largest radiances do not overflow", "[maps]") {
   const wavelet::Map map = world_map(Probe(image, Mapping::LatLong), 16, 4);
   for (const float value : map.rgb)
     REQUIRE(value == Approx(most).epsilon(1e-5));
-  for (const float value : turned_map(turning_level(map), {}, 16).rgb)
+  for (const float value : rotate_map(make_rotatable(map), {}, 16).rgb)
     REQUIRE(value == Approx(most).epsilon(1e-5));
 }
 
@@ -392,7 +392,7 @@ TEST_CASE("Rotated maps are never brighter than the probe, and keep its integral
     const float most = brightest(probe) * (1 + rounding);
     const Vec3 axis(uniform(random), uniform(random), uniform(random));
     const wavelet::Map turned =
-        turned_map(turning_level(world), turned_by(4 * uniform(random), axis), 16);
+        rotate_map(make_rotatable(world), turned_by(4 * uniform(random), axis), 16);
     const ProbeMaps maps(probe, {16, 3, 4});
     const wavelet::Map cell = maps.make(static_cast<int>(random() % 3U), 1);
     INFO(mapping_name(probe.mapping()) << " " << probe.width() << " x " << probe.height());
@@ -408,11 +408,11 @@ TEST_CASE("Two lights side by side are nowhere added together by a rotation", "[
   wavelet::Map world(32);
   world.set(20, 9, {100, 100, 100});
   world.set(21, 9, {100, 100, 100});
-  const WorldLevel level = turning_level(world);
+  const RotatableMap level = make_rotatable(world);
   for (int i = 0; i < 20; ++i) {
     const Frame frame = turned_by(0.3F * static_cast<float>(i), Vec3(1, 2, static_cast<float>(i)));
     for (const int size : {8, 32, 64}) {
-      const wavelet::Map map = turned_map(level, frame, size);
+      const wavelet::Map map = rotate_map(level, frame, size);
       INFO(i << " at " << size);
       REQUIRE(largest(map.rgb) <= 100 * (1 + rounding));
       REQUIRE(map_integral(map) == Approx(map_integral(world)).epsilon(0.005));
@@ -426,9 +426,9 @@ TEST_CASE("Rotated maps of constant probes are constant", "[maps]") {
       Image image = blank(mapping, size);
       std::fill(image.rgb.begin(), image.rgb.end(), 2.0F);
       const Probe probe(image, mapping);
-      const WorldLevel level = turning_level(world_map(probe, 32, 1));
+      const RotatableMap level = make_rotatable(world_map(probe, 32, 1));
       INFO(mapping_name(mapping) << " " << size);
-      for (const float value : turned_map(level, turned_by(1, Vec3(1, 2, 3)), 16).rgb)
+      for (const float value : rotate_map(level, turned_by(1, Vec3(1, 2, 3)), 16).rgb)
         REQUIRE(value == Approx(2).epsilon(rounding));
       for (const float value : ProbeMaps(probe, {16, 5, 1}).make(1, 3).rgb)
         REQUIRE(value == Approx(2).epsilon(rounding));
@@ -440,7 +440,7 @@ TEST_CASE("Rotated maps agree with the nearest look-up", "[maps]") {
   for (const Mapping mapping : all_mappings)
     for (const int size : {1, 8}) {
       const Probe probe(spotted(mapping, size), mapping);
-      const wavelet::Map turned = turned_map(turning_level(world_map(probe, 64, 4)), turn, 16);
+      const wavelet::Map turned = rotate_map(make_rotatable(world_map(probe, 64, 4)), turn, 16);
       const wavelet::Map cell = ProbeMaps(probe, {16, 4, 8}).make(2, 1);
       INFO(mapping_name(mapping) << " " << size);
       CHECK(relative_l2(turned, looked_up_in(probe, 16, 400, [&](const Vec2&) { return turn; })) <

@@ -1,7 +1,7 @@
 // Images of the accepted formats against OpenImageIO, an independent reader and writer of all of
 // them but PFM.
 
-#include <probe/read_image.h>
+#include <probe/read_probe.h>
 
 #include "temporary_folder.h"
 

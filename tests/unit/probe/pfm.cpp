@@ -1,6 +1,6 @@
 #include "probe_files.h"
 
-#include <probe/read_image.h>
+#include <probe/read_probe.h>
 
 #include <cstring>
 

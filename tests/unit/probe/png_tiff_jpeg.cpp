@@ -2,7 +2,7 @@
 
 #include "probe_files.h"
 
-#include <probe/read_image.h>
+#include <probe/read_probe.h>
 
 #include <cmath>
 #include <cstdio>

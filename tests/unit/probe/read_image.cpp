@@ -1,6 +1,5 @@
 #include "probe_files.h"
 
-#include <probe/read_image.h>
 #include <probe/read_probe.h>
 #include <probe/rgbe.h>
 

@@ -1,9 +1,8 @@
 #include "probe_files.h"
 
-#include "file/reader_process.h"
-#include "file/reader_protocol.h"
+#include "file/external_reader.h"
 
-#include <probe/read_image.h>
+#include <probe/read_probe.h>
 
 #include <chrono>
 #include <csignal>

@@ -174,7 +174,7 @@ void write_rule(const std::string& path) {
 }
 
 void write_two_pixels(const std::string& path) {
-  probe::Image image(512, 512);
+  Image image(512, 512);
   image.set(216, 92, Rgb(2048, 1024, 512));
   image.set(200, 200, Rgb(2048, 1024, 512));
   probe::write_rgbe(path, image);

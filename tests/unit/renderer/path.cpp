@@ -24,7 +24,7 @@ namespace {
 class PathScene {
 public:
   explicit PathScene(float white = 0) {
-    probe::Image image = probe::draw_angular(*probe::make_scene(probe::SceneKind::Studio), 32);
+    Image image = probe::draw_angular(*probe::make_scene(probe::SceneKind::Studio), 32);
     for (float& value : image.rgb)
       value = white > 0 ? white : std::min(value, 2.0F); // brute force wants no small bright lamps
     probe::write_rgbe(m_folder->file("probe.hdr"), image);

@@ -94,7 +94,7 @@ TEST_CASE("a white furnace shows the albedo, and shadows of a plane overhead",
   description.light.probe = folder.file("white.hdr");
   description.light.mapping = "angular";
   description.light.background = false;
-  probe::Image white = probe::draw_angular(*probe::make_scene(probe::SceneKind::Studio), 64);
+  Image white = probe::draw_angular(*probe::make_scene(probe::SceneKind::Studio), 64);
   std::fill(white.rgb.begin(), white.rgb.end(), 1.0F);
   probe::write_rgbe(description.light.probe, white);
   const LoadedScene scene(description, {}, SamplerKind::Product, true);

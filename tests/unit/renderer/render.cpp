@@ -21,7 +21,7 @@ namespace {
 
 /// A grey sphere over a grey plane, or alone, under a synthesised probe.
 SceneDescription lambert_scene(const TemporaryFolder& folder, bool plane, bool white = false) {
-  probe::Image image = probe::draw_angular(*probe::make_scene(probe::SceneKind::Studio), 64);
+  Image image = probe::draw_angular(*probe::make_scene(probe::SceneKind::Studio), 64);
   if (white)
     std::fill(image.rgb.begin(), image.rgb.end(), 1.0F);
   probe::write_rgbe(folder.file("probe.hdr"), image);

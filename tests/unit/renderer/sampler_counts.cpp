@@ -96,11 +96,11 @@ constexpr SamplerKind mixtures[] = {SamplerKind::Mis, SamplerKind::MisPower, Sam
 class TwoPixels {
 public:
   TwoPixels() {
-    probe::Image image(2, 1);
+    Image image(2, 1);
     image.set(0, 0, Rgb(1, 2, 3));
     image.set(1, 0, Rgb(20, 12, 16));
     probe::write_rgbe(file("two.hdr"), image);
-    probe::Image fine(64, 32); // the same light, for its trees
+    Image fine(64, 32); // the same light, for its trees
     for (int y = 0; y < fine.height; ++y)
       for (int x = 0; x < fine.width; ++x)
         fine.set(x, y, image.at(x / 32, 0));

@@ -64,7 +64,7 @@ struct RepresentativeLights {
 
 /// Writes a probe that is uniform but for one pixel.
 std::string uniform_probe(const TemporaryFolder& folder, float value, float bright) {
-  probe::Image image(64, 64);
+  Image image(64, 64);
   std::fill(image.rgb.begin(), image.rgb.end(), value);
   image.set(40, 21, Rgb::Constant(bright));
   std::string path = folder.file("uniform.hdr");
@@ -216,7 +216,7 @@ TEST_CASE(
     "structured representative lights are shared by energy and the fourth root of solid angle") {
   const TemporaryFolder folder;
   // A small disk as strong as the rest of the sky.
-  probe::Image image(64, 64);
+  Image image(64, 64);
   std::fill(image.rgb.begin(), image.rgb.end(), 1.0F);
   for (int y = 30; y < 34; ++y)
     for (int x = 20; x < 24; ++x)

@@ -31,18 +31,6 @@ AffineMap our_map() {
 
 } // namespace
 
-TEST_CASE("sine and cosine of degrees", "[transform]") {
-  for (double degrees = -1000; degrees <= 1000; degrees += 0.37) {
-    const SineCosine turn = sine_cosine_degrees(degrees);
-    REQUIRE(turn.sine == Approx(std::sin(degrees * M_PI / 180)).margin(1e-14));
-    REQUIRE(turn.cosine == Approx(std::cos(degrees * M_PI / 180)).margin(1e-14));
-  }
-  CHECK(sine_cosine_degrees(90).cosine == 0);
-  CHECK(sine_cosine_degrees(-90).sine == -1);
-  CHECK(sine_cosine_degrees(540).cosine == -1);
-  CHECK(sine_cosine_degrees(540).sine == 0);
-}
-
 TEST_CASE("steps compose in the order written", "[transform]") {
   const Eigen::Affine3d truth = eigen_map();
   const AffineMap ours = our_map();

@@ -109,7 +109,7 @@ TEST_CASE("plots hold what can be shown on logarithmic axes", "[bench]") {
 
 TEST_CASE("pictures are PNG files in the text", "[bench]") {
   PairResult pair;
-  pair.reference = image::Picture(4, 2);
+  pair.reference = Image(4, 2);
   pair.hit.assign(8, true);
   const std::string head = "data:image/png;base64,iVBORw0KGgo";
   CHECK(picture_uri(pair, pair.reference).rfind(head, 0) == 0);

@@ -16,11 +16,10 @@
 
 using namespace haarlight;
 using namespace haarlight::testing;
-using image::Picture;
 
 namespace {
 
-Picture read(const std::string& bytes) {
+Image read(const std::string& bytes) {
   const TemporaryFolder folder;
   write_bytes(folder.file("a.exr"), bytes);
   return image::read_exr(folder.file("a.exr"));
@@ -106,7 +105,7 @@ TEST_CASE("the data window is placed in the display window", "[image]") {
   // Data columns 1 to 5, rows −1 to 1; the display window shows columns 0 to 3, rows 0 to 3.
   const ExrBytes exr =
       ExrBytes::scanlines({"B", "G", "R"}, box(1, -1, 5, 1), box(0, 0, 3, 3), position_value);
-  const Picture picture = read(exr.bytes());
+  const Image picture = read(exr.bytes());
   REQUIRE((picture.width == 4 && picture.height == 4));
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) {
@@ -281,9 +280,9 @@ TEST_CASE("tiles and their levels are checked", "[image]") {
 
 TEST_CASE("a picture of few bytes is read if they hold all of its pixels", "[image]") {
   const TemporaryFolder folder;
-  image::write_exr(folder.file("black.exr"), Picture(1024, 512));
+  image::write_exr(folder.file("black.exr"), Image(1024, 512));
   CHECK(std::filesystem::file_size(folder.file("black.exr")) < 20000);
-  const Picture back = image::read_exr(folder.file("black.exr"));
+  const Image back = image::read_exr(folder.file("black.exr"));
   CHECK((back.width == 1024 && back.height == 512));
   CHECK(std::count(back.rgb.begin(), back.rgb.end(), 0.0F) == 3 * 1024 * 512);
 }
@@ -291,7 +290,7 @@ TEST_CASE("a picture of few bytes is read if they hold all of its pixels", "[ima
 TEST_CASE("a damaged EXR is read or refused, never anything else", "[image]") {
   const TemporaryFolder folder;
   const std::string path = folder.file("damaged.exr");
-  Picture ramp(8, 8);
+  Image ramp(8, 8);
   for (std::size_t i = 0; i < ramp.rgb.size(); ++i)
     ramp.rgb[i] = static_cast<float>(i % 7);
   image::write_exr(folder.file("ramp.exr"), ramp);

@@ -58,7 +58,7 @@ void require_refused(const std::string& path, const std::string& words) {
 
 /// A grey scanline EXR.
 void write_plain(const std::string& path, int width, int height, float value) {
-  image::Picture picture(width, height);
+  Image picture(width, height);
   std::fill(picture.rgb.begin(), picture.rgb.end(), value);
   image::write_exr(path, picture);
 }

@@ -2,7 +2,6 @@
 #include "fixture.h"
 
 #include <image/contact_sheet.h>
-#include <image/exposure.h>
 #include <image/false_colour.h>
 #include <image/image_exr.h>
 #include <image/png.h>
@@ -15,12 +14,11 @@
 
 using namespace haarlight;
 using namespace haarlight::testing;
-using image::Picture;
 
 namespace {
 
-Picture ramp(int width, int height) {
-  Picture picture(width, height);
+Image ramp(int width, int height) {
+  Image picture(width, height);
   for (std::size_t i = 0; i < picture.rgb.size(); ++i)
     picture.rgb[i] = static_cast<float>(i) / static_cast<float>(picture.rgb.size());
   return picture;
@@ -30,9 +28,9 @@ Picture ramp(int width, int height) {
 
 TEST_CASE("an EXR picture survives exactly", "[image]") {
   const TemporaryFolder folder;
-  const Picture picture = ramp(13, 7);
+  const Image picture = ramp(13, 7);
   image::write_exr(folder.file("a.exr"), picture);
-  const Picture back = image::read_exr(folder.file("a.exr"));
+  const Image back = image::read_exr(folder.file("a.exr"));
   CHECK(back.width == 13);
   CHECK(back.height == 7);
   CHECK(back.rgb == picture.rgb);
@@ -40,7 +38,7 @@ TEST_CASE("an EXR picture survives exactly", "[image]") {
 
 TEST_CASE("an EXR holds channels and attributes, and no clock", "[image]") {
   const TemporaryFolder folder;
-  const Picture picture = ramp(5, 3);
+  const Image picture = ramp(5, 3);
   image::ExrImage exr;
   exr.width = 5;
   exr.height = 3;
@@ -74,18 +72,18 @@ TEST_CASE("sRGB codes round to the nearest and come back", "[image]") {
 
 TEST_CASE("a PNG picture comes back to within a code", "[image]") {
   const TemporaryFolder folder;
-  const Picture picture = ramp(31, 17);
+  const Image picture = ramp(31, 17);
   image::write_png(folder.file("a.png"), picture);
-  const Picture back = image::read_png(folder.file("a.png"));
+  const Image back = image::read_png(folder.file("a.png"));
   REQUIRE(back.rgb.size() == picture.rgb.size());
   for (std::size_t i = 0; i < picture.rgb.size(); ++i)
     REQUIRE(image::srgb_code(back.rgb[i]) == image::srgb_code(picture.rgb[i]));
 }
 
 TEST_CASE("exposure and tone maps keep the order of values", "[image]") {
-  Picture picture(4, 1);
+  Image picture(4, 1);
   picture.rgb = {0, 0.1F, 0.2F, 0.4F, 0.8F, 1, 2, 4, 8, 16, 1e30F, -1};
-  Picture filmic = picture;
+  Image filmic = picture;
   image::tone_map(filmic, {.exposure = -1, .tone_map = image::ToneMap::Filmic});
   image::tone_map(picture, {.exposure = 1});
   CHECK(picture.rgb[1] == Approx(0.2));
@@ -125,16 +123,16 @@ TEST_CASE("a PNG whose file cannot hold its pixels is refused", "[image]") {
     CHECK_THAT(error.what(), Catch::Contains("too short for its 16384 x 8192 pixels"));
   }
   // A black picture is small, and read.
-  image::write_png(folder.file("black.png"), Picture(2000, 1000));
+  image::write_png(folder.file("black.png"), Image(2000, 1000));
   CHECK(std::filesystem::file_size(folder.file("black.png")) < 40000);
   CHECK(image::read_png(folder.file("black.png")).width == 2000);
 }
 
 TEST_CASE("a contact sheet shows every picture and its caption", "[image]") {
-  Picture red(10, 8);
+  Image red(10, 8);
   for (std::size_t i = 0; i < red.rgb.size(); i += 3)
     red.rgb[i] = 1;
-  const Picture sheet = image::contact_sheet({{red, "A"}, {red, ""}, {red, "b"}}, {.margin = 4});
+  const Image sheet = image::contact_sheet({{red, "A"}, {red, ""}, {red, "b"}}, {.margin = 4});
   CHECK(sheet.width == 2 * 14 + 4);
   CHECK(sheet.height == 2 * (8 + 4 + 9) + 4);
   int reds = 0;
@@ -158,7 +156,7 @@ TEST_CASE("signed fields shrink to what stands out, and show their sign", "[imag
     CHECK(image::false_colour(t)[0] > image::false_colour(t)[2]);
     CHECK((image::false_colour(t) == image::false_colour(-t).reverse()).all());
   }
-  const Picture picture = image::false_colour_picture(half, 160);
+  const Image picture = image::false_colour_picture(half, 160);
   CHECK(picture.width == 320);
   CHECK(picture.height == 320 + 22);
   CHECK((picture.at(319, 319) == image::false_colour(-1)).all());
@@ -168,12 +166,12 @@ TEST_CASE("signed fields shrink to what stands out, and show their sign", "[imag
 }
 
 TEST_CASE("a picture is brightened to middle grey, a black one not at all", "[image]") {
-  Picture picture = ramp(9, 9);
+  Image picture = ramp(9, 9);
   image::brighten(picture, image::middle_grey_gain(picture));
   double sum = 0;
   for (int y = 0; y < 9; ++y)
     for (int x = 0; x < 9; ++x)
       sum += static_cast<double>(luminance(picture.at(x, y)));
   CHECK(sum / 81 == Approx(0.18));
-  CHECK(image::middle_grey_gain(Picture(3, 3)) == 1);
+  CHECK(image::middle_grey_gain(Image(3, 3)) == 1);
 }

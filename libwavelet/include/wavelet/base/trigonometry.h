@@ -1,6 +1,7 @@
 #pragma once
-// Polynomial trigonometry for a float or four lanes of them. The C library picks different code for
-// different CPUs and so rounds differently; these give the same bits everywhere, and four at once.
+// Polynomial trigonometry for a float or four lanes of them. The C library selects code by CPU and
+// so rounds differently from machine to machine; these give the same bits everywhere.
+// elementary.h has slower functions in double with errors of 1e-14.
 // Errors are absolute, in radians where the result is an angle.
 
 #include <wavelet/base/lanes.h>

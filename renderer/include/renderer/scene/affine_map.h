@@ -5,14 +5,6 @@
 
 namespace haarlight::renderer {
 
-/// Sine and cosine of an angle in degrees, exact at multiples of 90; error below 1e-15. The same
-/// bits on every CPU, which the C library's are not.
-struct SineCosine {
-  double sine = 0;
-  double cosine = 1;
-};
-SineCosine sine_cosine_degrees(double degrees);
-
 /// p ↦ linear·p + offset, right-handed world axes, column vectors.
 struct AffineMap {
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();

@@ -32,7 +32,7 @@ public:
 private:
   int m_resolution;
   Eigen::Matrix3f m_placed; ///< from the light's frame to the world
-  probe::WorldLevel m_level;
+  probe::RotatableMap m_level;
 };
 
 /// Whether a set is a transfer: by its kind or, in files of versions before 0.2.0, by its
