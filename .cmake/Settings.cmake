@@ -7,12 +7,13 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 include(GNUInstallDirs)
 
-option(HAARLIGHT_WERROR "Treat warnings as errors" ON)
-set(HAARLIGHT_SANITIZE "" CACHE STRING "Sanitizers: address;undefined or thread")
+option(HAARLIGHT_WERROR "Treat warnings as errors" OFF)
+option(HAARLIGHT_BUILD_TOOLS "Build the programs, not the libraries alone" ON)
+option(HAARLIGHT_CHECKED "Run the unit tests with libraries that check addresses and undefined behaviour, too" OFF)
+set(HAARLIGHT_SANITIZE "" CACHE STRING "Sanitizers of everything: address;undefined or thread")
 
 add_library(haarlight_settings INTERFACE)
 # No fused multiply-add behind our back: results must not depend on the CPU.
@@ -31,6 +32,6 @@ option(HAARLIGHT_PRECOMPILE "Precompile the headers that nearly every source inc
 set(HAARLIGHT_COMMON_HEADERS <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <functional> <memory>
     <optional> <span> <string> <vector>)
 
-# Sources of a library are compiled several at a time: the other half of a cold build. Names in unnamed namespaces are
-# unique within a library therefore.
-option(HAARLIGHT_UNITY "Compile the sources of a library in batches" ON)
+# Sources of a library are compiled in batches: the other half of a cold build. Names in unnamed namespaces are therefore
+# unique within a library.
+set(HAARLIGHT_UNITY_BATCH 8 CACHE STRING "Sources compiled as one; 1 = each alone, 0 = all of a target")
