@@ -1,6 +1,5 @@
 #include "brdf_test_support.h"
 #include "chi_square.h"
-#include "nonnegative_factors.h"
 
 #include <brdf/analytic.h>
 #include <brdf/factored_brdf.h>

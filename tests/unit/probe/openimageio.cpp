@@ -95,7 +95,7 @@ TEST_CASE("Images are read as OpenImageIO reads them", "[openimageio]") {
   const std::string path = folder.file(format.name);
   write(path, format);
   const std::vector<float> expected = read_by_openimageio(path);
-  const Image image = read_image(path).image;
+  const haarlight::Image image = read_image(path).image;
   REQUIRE((image.width == width && image.height == height));
   float worst = 0;
   for (std::size_t i = 0; i < expected.size(); ++i)
