@@ -114,7 +114,8 @@ void PictureDrawer::show(unsigned framebuffer, const Viewport& viewport, double 
 SceneDrawer::SceneDrawer(const ViewScene& scene)
     : m_punctual(full_screen_shader(), punctual_shader()),
       m_environment(full_screen_shader(), environment_shader()) {
-  upload(pack_scene(scene, true), {&m_punctual, &m_environment});
+  upload(pack_scene(scene), {&m_punctual, &m_environment}); // reports scenes that are too large
+  upload(pack_lobes(scene), {&m_environment});
 }
 
 double SceneDrawer::draw(const ViewState& state) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace haarlight::view {
 namespace {
@@ -93,12 +92,6 @@ TextureData pack_objects(const ViewScene& scene) {
   return texture_data("objects", TexelFormat::Rgba32F, 2, std::max(count, 1), texels);
 }
 
-void append_inputs(ShaderInputs& inputs, ShaderInputs more) {
-  std::move(more.textures.begin(), more.textures.end(), std::back_inserter(inputs.textures));
-  std::move(more.floats.begin(), more.floats.end(), std::back_inserter(inputs.floats));
-  std::move(more.integers.begin(), more.integers.end(), std::back_inserter(inputs.integers));
-}
-
 } // namespace
 
 PackedLight pack_light(const wavelet::Map& map) {
@@ -127,19 +120,20 @@ PackedLight pack_light(const wavelet::Map& map) {
   return light;
 }
 
-ShaderInputs pack_scene(const ViewScene& scene, bool lobes) {
+ShaderInputs pack_scene(const ViewScene& scene) {
   ShaderInputs inputs = pack_trees(scene.trees());
   inputs.textures.push_back(pack_objects(scene));
   inputs.integers.emplace_back("object_count", scene.shapes().size());
-  if (!lobes)
-    return inputs;
+  return inputs;
+}
+
+ShaderInputs pack_lobes(const ViewScene& scene) {
   std::vector<std::span<const wavelet::TreeView>> sets;
   for (const Columns& columns : scene.columns())
     sets.push_back(std::span(scene.trees())
                        .subspan(static_cast<std::size_t>(columns.first),
                                 static_cast<std::size_t>(columns.count)));
-  append_inputs(inputs, pack_lobes(sets));
-  return inputs;
+  return pack_lobes(sets);
 }
 
 } // namespace haarlight::view

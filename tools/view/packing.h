@@ -115,8 +115,11 @@ struct PackedLight {
 /// @param map of a light in its own frame, never negative
 PackedLight pack_light(const wavelet::Map& map);
 
-/// Trees, the shapes (`objects`, RGBA32F, two texels for each as scene.glsl reads them), and on
-/// demand lobes. @throws as pack_trees()
-ShaderInputs pack_scene(const ViewScene& scene, bool lobes);
+/// The trees, and the shapes: `objects`, RGBA32F, two texels for each as scene.glsl reads them.
+/// @throws as pack_trees()
+ShaderInputs pack_scene(const ViewScene& scene);
+
+/// The lobes of all materials, for environments.
+ShaderInputs pack_lobes(const ViewScene& scene);
 
 } // namespace haarlight::view

@@ -85,10 +85,11 @@ std::string view_page(const ViewScene& scene, const PageOptions& options) {
   json["shaders"] = {{"full_screen", full_screen_shader()},
                      {"punctual", punctual_shader()},
                      {"tone_map", tone_map_shader()}};
-  add_inputs(pack_scene(scene, environment != nullptr), json);
+  add_inputs(pack_scene(scene), json);
   int levels = scene.levels();
   if (environment != nullptr) {
     json["shaders"]["environment"] = environment_shader();
+    add_inputs(pack_lobes(scene), json);
     add_inputs(environment->inputs, json);
     levels = std::max(levels, environment->levels);
   }

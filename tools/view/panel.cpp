@@ -82,7 +82,7 @@ void show_panel(const PanelContents& contents, Settings& settings) {
   begin_panel(ImGuiWindowFlags_NoResize);
   ImGui::PushItemWidth(200);
   show_combo("material", contents.materials, settings.material);
-  show_combo("against", contents.others, settings.second);
+  show_combo("beside", contents.others, settings.second);
   ImGui::SliderFloat("exposure", &settings.exposure, -10, 10, "%+.1f stops");
   ImGui::SliderInt("level", &settings.level, -1, contents.levels,
                    settings.level < 0 ? "as needed" : "%d");
