@@ -33,8 +33,8 @@ cmake --preset release
 cmake --build build/release -j "$jobs"
 check format check_format
 check scripts check_scripts
-check headers cmake --build build/release -j "$jobs" --target all_verify_interface_header_sets
-check lint bash tests/lint.sh build/release "$jobs"
+check headers bash tests/headers.sh "$jobs"
+check lint bash tests/lint.sh "$jobs"
 check tests ctest --test-dir build/release --output-on-failure -j "$jobs" "$@"
 
 if [ -n "$failed" ]; then

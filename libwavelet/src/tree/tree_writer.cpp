@@ -21,8 +21,8 @@ float largest_difference(const Details& d) {
 
 void TreeWriter::add(std::uint32_t children, const Details& details) {
   if (m_tree.channels == 1) {
-    add(children, {luminance(to_rgb(details.d1)), luminance(to_rgb(details.d2)),
-                   luminance(to_rgb(details.d3))});
+    add(children, std::array<float, 3>{luminance(to_rgb(details.d1)), luminance(to_rgb(details.d2)),
+                                       luminance(to_rgb(details.d3))});
     return;
   }
   m_links.add(children);

@@ -256,7 +256,7 @@ bool SceneNode::boolean() const {
 
 std::string SceneNode::text() const {
   require(*this, m_value, m_value.is_string(), "a string");
-  const auto text = m_value.get<std::string>();
+  auto text = m_value.get<std::string>();
   if (text.empty())
     fail("must not be empty");
   if (text.find('\0') != std::string::npos)
