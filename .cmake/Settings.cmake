@@ -12,8 +12,7 @@ include(GNUInstallDirs)
 
 option(HAARLIGHT_WERROR "Treat warnings as errors" OFF)
 option(HAARLIGHT_BUILD_TOOLS "Build the programs, not the libraries alone" ON)
-option(HAARLIGHT_CHECKED "Run the unit tests with libraries that check addresses and undefined behaviour, too" OFF)
-set(HAARLIGHT_SANITIZE "" CACHE STRING "Sanitizers of everything: address;undefined or thread")
+set(HAARLIGHT_SANITIZE "" CACHE STRING "Sanitizers: address;undefined or thread")
 
 add_library(haarlight_settings INTERFACE)
 # No fused multiply-add behind our back: results must not depend on the CPU.

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # clang-tidy over every source of the libraries, programs and tests. All sources of a target are read as one, which
 # parses their headers once. A target that has passed is read again when its sources, a header or the settings change.
-# As a full round takes long, it ends after LINT_SECONDS (default 300; 0 = no limit); what is left is counted and comes next time.
+# As a full round takes long, it ends after LINT_SECONDS (default 200; 0 = no limit); what is left is counted and comes next time.
 # Usage: lint.sh JOBS
 set -euo pipefail
 
 jobs=$1
-limit=${LINT_SECONDS:-300}
+limit=${LINT_SECONDS:-200}
 deadline=$(($(date +%s) + limit))
 left=$(mktemp)
 trap 'rm -f "$left"' EXIT
@@ -14,7 +14,7 @@ build=build/lint
 stamps=$build/passed
 mkdir -p "$stamps"
 # clang-tidy cannot read the compiler's precompiled headers.
-cmake -S . -B $build -G Ninja -DHAARLIGHT_UNITY_BATCH=0 -DHAARLIGHT_PRECOMPILE=OFF -DHAARLIGHT_CHECKED=OFF >/dev/null
+cmake -S . -B $build -G Ninja -DHAARLIGHT_UNITY_BATCH=0 -DHAARLIGHT_PRECOMPILE=OFF >/dev/null
 
 # The units that a compiler would be given.
 units() {

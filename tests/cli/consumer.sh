@@ -18,6 +18,15 @@ for tool in brdfsynth probesynth brdf2maps probe2maps maps2haar haarinfo haarren
 done
 "$work/prefix/bin/probesynth" --scene studio --size 64 -o studio.hdr >/dev/null
 "$work/prefix/bin/probe2maps" studio.hdr -o studio.haar >/dev/null
+"$work/prefix/bin/brdfsynth" --model ggx -o ggx.binary >/dev/null
+"$work/prefix/bin/brdf2maps" ggx.binary --size 64 --theta 8 --conservation-tolerance 1 -o ggx.haar >/dev/null
+"$work/build/example" studio.haar ggx.haar
+# The README shows the example as it is compiled.
+# shellcheck disable=SC2016
+if ! diff <(sed -n '/^```cpp$/,/^```$/p' "$source/README.md" | sed '1d;$d') "$source/tests/consumer/example.cpp"; then
+  echo "FAILED: README.md shows another example than tests/consumer/example.cpp"
+  exit 1
+fi
 "$work/prefix/bin/haarinfo" studio.haar --validate
 "$work/prefix/bin/haarinfo" studio.haar --image studio.exr >/dev/null
 "$work/prefix/bin/probe2maps" studio.exr --mapping octahedral -o again.haar >/dev/null

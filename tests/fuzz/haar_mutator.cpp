@@ -1,9 +1,7 @@
 #include "haar_mutator.h"
 
-#include <file_layout.h>
-#include <packed_layout.h>
-#include <set_layout.h>
-#include <tree_block.h>
+#include <file/file_format.h>
+#include <file/tree_block.h>
 
 #include <wavelet/base/error.h>
 #include <wavelet/file/input_file.h>
