@@ -2,19 +2,10 @@
 # Black probes, and probes of the smallest and largest radiances, by every sampler and integrator.
 source "$(dirname "$0")/lib.sh" "$1"
 
-# probe NAME OTHERS BRIGHT: a PFM image of 8 x 4 pixels, all OTHERS but one BRIGHT; floats as escaped bytes.
-probe() {
-  { printf 'PF\n8 4\n-1.0\n'
-    for i in {1..32}; do
-      value=$2
-      [ "$i" -eq 21 ] && value=$3
-      printf '%b' "$value$value$value"
-    done; } >"$1.pfm"
-}
 zero='\0\0\0\0' one='\0\0\200\77' tiny='\302\26\1\0' huge='\245\324\150\123' # 1e-40, 1e12
-probe black "$zero" "$zero"
-probe tiny "$zero" "$tiny"
-probe bright "$one" "$huge"
+pfm_probe black "$zero" "$zero"
+pfm_probe tiny "$zero" "$tiny"
+pfm_probe bright "$one" "$huge"
 
 # scene NAME ALBEDO PROBE
 scene() {
@@ -55,7 +46,7 @@ expect 0 probe2maps black.pfm -o black.haar --mapping latlong --size 32
 expect 0 haarinfo black.haar --validate
 ! grep -qiE 'nan|inf$' "$log/out" || fail "haarinfo prints no number"
 largest='\377\377\177\177'
-probe largest "$largest" "$largest"
+pfm_probe largest "$largest" "$largest"
 expect 3 probe2maps largest.pfm -o x.haar --mapping latlong
 says 'exceeds the largest single-precision number'
 finish

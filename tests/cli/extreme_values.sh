@@ -3,19 +3,10 @@
 # refused, and neither "nan" nor "inf" in results.
 source "$(dirname "$0")/lib.sh" "$1"
 
-# probe NAME OTHERS BRIGHT: a PFM image of 8 x 4 pixels, all OTHERS but one BRIGHT; floats as escaped bytes.
-probe() {
-  { printf 'PF\n8 4\n-1.0\n'
-    for i in {1..32}; do
-      value=$2
-      [ "$i" -eq 21 ] && value=$3
-      printf '%b' "$value$value$value"
-    done; } >"$1.pfm"
-}
 zero='\0\0\0\0' one='\0\0\200\77' huge='\312\362\111\161' # 1e30
-probe black "$zero" "$zero"
-probe huge "$huge" "$huge"
-probe peak "$one" "$huge"
+pfm_probe black "$zero" "$zero"
+pfm_probe huge "$huge" "$huge"
+pfm_probe peak "$one" "$huge"
 
 # MERL files of one value in all cells: 0, and 1.7e29, whose bytes as a double are 01 … 01 46
 header='\132\0\0\0\132\0\0\0\264\0\0\0'

@@ -157,3 +157,13 @@ finish() {
   [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
   [ -z "$skipped" ] || exit 77
 }
+
+# pfm_probe NAME OTHERS BRIGHT: a PFM image of 8 x 4 pixels, all OTHERS but one BRIGHT; floats as escaped bytes.
+pfm_probe() {
+  { printf 'PF\n8 4\n-1.0\n'
+    for i in {1..32}; do
+      value=$2
+      [ "$i" -eq 21 ] && value=$3
+      printf '%b' "$value$value$value"
+    done; } >"$1.pfm"
+}

@@ -48,7 +48,7 @@ inline Estimate estimate_with(const LoadedScene& scene, Sampler& sampler, const 
 
 /// Whether one sampler's means agree with quadrature at all shading points. @param what for
 /// messages
-/// @param key tells runs apart; used up by 6 @return how many are beyond three standard errors
+/// @param key distinguishes runs; advances by 6 @return how many are beyond three standard errors
 inline int count_strays(const SceneDescription& description, SamplerKind kind,
                         const std::string& what, std::uint32_t key) {
   const probe::Probe source = probe_of(description);

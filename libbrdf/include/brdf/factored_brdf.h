@@ -14,8 +14,8 @@
 //
 // Unlike in the paper, rows of Y are normalised, so that dark views are fitted as well as bright
 // ones; a small fraction of the samples is cosine-weighted, so that the density is positive
-// wherever the reflectance is; and the density is exactly that of the samples, whatever the error
-// of the factorisation.
+// wherever the reflectance is; and the density is exactly that of the samples, independent of the
+// error of the factorisation.
 
 #include <wavelet/base/geometry.h>
 

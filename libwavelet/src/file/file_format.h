@@ -73,7 +73,7 @@ inline std::uint64_t tree_size(std::uint64_t nodes, std::uint64_t levels, std::u
                   tree_padding);
 }
 
-/// By the name in the magic; what comes after it tells damage by text-mode transfers.
+/// Detected by the name in the magic; the bytes after it reveal damage by text-mode transfers.
 inline bool begins_with(std::span<const std::byte> bytes, const unsigned char (&magic)[8]) {
   return bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, 5) == 0;
 }

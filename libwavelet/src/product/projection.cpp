@@ -329,7 +329,7 @@ float ProductProjector::Projection::choose_limit() {
   return limit;
 }
 
-/// The nodes above the limit as a tree: breadth first, whatever the order in which they were made.
+/// The nodes above the limit as a tree: breadth first, independent of the order of creation.
 Tree ProductProjector::Projection::written(float limit) {
   const auto is_kept = [&](std::int32_t node) {
     return node >= 0 && m_costs[static_cast<std::size_t>(node)].under > limit;

@@ -16,7 +16,7 @@
 namespace haarlight::wavelet {
 namespace {
 
-/// The C locale's shortest decimal that tells doubles of an option apart.
+/// The C locale's shortest decimal that distinguishes the doubles of an option.
 std::string number_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);

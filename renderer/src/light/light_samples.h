@@ -33,7 +33,8 @@ public:
   /// Traces the ray of sample i. False where weight() is 0.
   bool visible(std::size_t i) const;
 
-  /// Traces the ray of sample i, whatever its weight; none if its direction is below the horizon.
+  /// Traces the ray of sample i even if its weight is 0; no ray if its direction is below the
+  /// horizon.
   std::optional<bool> unoccluded(std::size_t i) const;
 
   float pdf(std::size_t i) const { return m_directions[i].pdf; }

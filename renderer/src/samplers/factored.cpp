@@ -9,7 +9,7 @@ namespace {
 
 using brdf::FactoredBrdf;
 
-/// Factorises a material's reflectance, whatever its representation.
+/// Factorises the reflectance of a material of any representation.
 FactoredBrdf factors_of(const Material& material) {
   return FactoredBrdf([&](const Vec3& wo, std::span<const Vec3> directions, std::span<float> out) {
     std::vector<Rgb> values(directions.size());

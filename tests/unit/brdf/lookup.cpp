@@ -194,7 +194,7 @@ TEST_CASE("one look-up and many give the same bits", "[lookup]") {
   }
 }
 
-TEST_CASE("a table without the reciprocity fold tells the two directions apart", "[lookup]") {
+TEST_CASE("a table without the reciprocity fold distinguishes the two directions", "[lookup]") {
   MerlTable table(360);
   for (std::size_t i = 0; i < table.raw.size(); ++i)
     table.raw[i] = i % 360 < 180 ? 100 : 200;
@@ -225,7 +225,7 @@ TEST_CASE("bilateral asymmetry is measured and can be averaged away", "[lookup]"
   CHECK(bilateral_asymmetry(holed) == 0);
 }
 
-TEST_CASE("provenance tells tables apart", "[lookup]") {
+TEST_CASE("provenance distinguishes tables", "[lookup]") {
   const MeasuredBrdf one(random_table(1));
   CHECK(one.hash() == MeasuredBrdf(random_table(1)).hash());
   CHECK(one.hash() != MeasuredBrdf(random_table(2)).hash());

@@ -205,7 +205,7 @@ TEST_CASE("the set describes itself", "[maps]") {
   CHECK(BrdfMaps(glossy()).info().size == 512);
 }
 
-TEST_CASE("map options that make no sense are told", "[maps]") {
+TEST_CASE("map options that make no sense are refused", "[maps]") {
   CHECK_FALSE(validate(BrdfMapOptions()));
   CHECK(validate(options(100, 64, 1)));
   CHECK(validate(options(64, 0, 1)));

@@ -462,7 +462,7 @@ TEST_CASE("Maps do not depend on the number of threads", "[maps]") {
   CHECK(make(1) == make(2));
 }
 
-TEST_CASE("A set tells all about itself", "[maps]") {
+TEST_CASE("A set describes itself", "[maps]") {
   Provenance source;
   source.set("source", "sky.hdr");
   const Probe probe = landscape_probe(Mapping::Angular, 40);

@@ -149,7 +149,7 @@ TEST_CASE("Old run lengths", "[rgbe]") {
       parse(file("-Y 2 +X 300", line + grey(9) + pixel(1, 1, 1, 43) + pixel(1, 1, 1, 1)));
   CHECK(image.at(299, 0)[0] == 7);
   CHECK(image.at(0, 1)[0] == 9);
-  // A pixel between two repeats starts the count anew.
+  // A pixel between two repeats restarts the count.
   const Image mixed =
       parse(file("-Y 1 +X 8", grey(5) + pixel(1, 1, 1, 3) + grey(6) + pixel(1, 1, 1, 3)));
   CHECK(mixed.at(3, 0)[0] == 5);

@@ -92,7 +92,7 @@ TEST_CASE("The sun has the right energy at any resolution", "[synth]") {
   }
 }
 
-TEST_CASE("The sun stands where it is told and outshines the sky", "[synth]") {
+TEST_CASE("The sun stands where it is placed and outshines the sky", "[synth]") {
   SceneOptions options;
   options.sun_elevation = 30;
   options.sun_azimuth = 90;

@@ -92,12 +92,12 @@ TEST_CASE("the occluders of a quadrant are among those of its square", "[seen]")
       for (unsigned q = 0; q < 4; ++q) {
         place = Square{3, i % 8, i / 8}.quadrant(q);
         SquareView alone;
-        SquareView told = {1, whole.occluders};
+        SquareView view = {1, whole.occluders};
         squares.query_visibility({&place, 1}, {&alone, 1});
-        squares.query_visibility({&place, 1}, {&told, 1});
+        squares.query_visibility({&place, 1}, {&view, 1});
         if (whole.seen > 0)
-          CHECK(told.seen == alone.seen);
-        CHECK((told.occluders & ~whole.occluders) == 0);
+          CHECK(view.seen == alone.seen);
+        CHECK((view.occluders & ~whole.occluders) == 0);
       }
     }
   }

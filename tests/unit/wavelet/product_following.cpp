@@ -34,7 +34,7 @@ struct Pair {
 
 } // namespace
 
-TEST_CASE("products that may not drift are those built afresh, and reach all they need") {
+TEST_CASE("products that may not drift are those that build() makes, and reach all they need") {
   const Tree light = tree_of(random_map(256, 9), 0.1);
   const Tree lobes[2] = {tree_of(lobe_map(256, 0), 0.01), tree_of(lobe_map(256, 1), 0.01)};
   const TreeView views[2] = {lobes[0].view(), lobes[1].view()};

@@ -125,7 +125,7 @@ private:
 
 enum class FileForm { Mapped, Packed };
 
-/// Which form of a .haar file this is by its first bytes; nothing if it is no .haar file.
+/// The form of a .haar file, detected from its first bytes; empty if it is not a .haar file.
 /// @throws Error(Input) if it cannot be read
 std::optional<FileForm> file_form(const InputFile& file);
 std::optional<FileForm> file_form(const std::string& path);

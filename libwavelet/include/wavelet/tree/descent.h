@@ -68,7 +68,7 @@ struct Descent {
 namespace detail {
 
 /// Chooses between two with weights `first` and `second`, not both 0; rescales u. Returns 1 for the
-/// second. Never chooses a weight of 0, whatever the rounding. Branchless: a branch would be
+/// second. Never chooses a weight of 0, even with rounding errors. Branchless: a branch would be
 /// mispredicted half of the time.
 inline unsigned choose(float& u, float first, float second) {
   const float t = u * (first + second);

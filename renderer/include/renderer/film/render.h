@@ -23,7 +23,7 @@ inline constexpr float integral_variance_bound = 0.001F;
 enum class Estimator {
   Unbiased,      ///< 1/N Σ f_r L v cos / p
   Bidirectional, ///< L_ns · mean(v), the paper's eq. 9: directions must follow the product. Only
-                 ///< directions above the horizon count, whatever their f_r
+                 ///< directions above the horizon count, including those with f_r = 0
   Ratio          ///< L_ns · Σ w v / Σ w, w = f_r L cos / p (Heitz, Hill and McGuire 2018)
 };
 
